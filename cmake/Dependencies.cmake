@@ -1,0 +1,20 @@
+# Every package that the build looks for. scripts/setup installs them on Debian 12.
+
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+
+# OpenVDB ships only a Find module, in a folder that also holds a FindTBB of its own: put the folder on
+# the module path for this one call and take it off again.
+list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
+find_package(OpenVDB 10 REQUIRED)
+list(POP_BACK CMAKE_MODULE_PATH)
+
+find_package(CGAL 5.5 REQUIRED)
+
+if(ISOWAVE_TESTS)
+  find_package(GTest REQUIRED)
+endif()

@@ -1,0 +1,44 @@
+// What an index mesh is, counted: closed, manifold, oriented, components, genus, volume, area. No geometry
+// library is needed for that, and a mesh that CGAL's data structures cannot hold can still be counted.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "volume/triangle_mesh.h"
+
+namespace isowave {
+
+struct ComponentTopology {
+    std::int64_t vertices = 0, edges = 0, triangles = 0;
+    std::int64_t euler = 0;  // V - E + F
+    std::int64_t genus = 0;  // (2 - euler)/2, meaningful when the component is closed and manifold
+    double volume = 0;       // world units^3, signed: positive when triangles are counter-clockwise from outside
+    double area = 0;         // world units^2
+};
+
+struct MeshTopology {
+    std::int64_t vertices = 0;            // used by a triangle
+    std::int64_t triangles = 0;
+    std::int64_t boundaryEdges = 0;       // edges with one triangle
+    std::int64_t nonManifoldEdges = 0;    // edges with more than two triangles
+    std::int64_t misorientedEdges = 0;    // edges with two triangles that run the same way along it
+    std::int64_t nonManifoldVertices = 0; // vertices whose triangles form more than one fan
+    std::int64_t degenerateTriangles = 0; // two equal corners (same index)
+    std::int64_t components = 0;          // connected by shared vertices
+    std::int64_t genus = 0;               // sum over components
+    double volume = 0, area = 0;
+    std::vector<ComponentTopology> each;  // largest |volume| first
+
+    bool closed() const { return triangles > 0 && boundaryEdges == 0; }
+    bool manifold() const { return nonManifoldEdges == 0 && nonManifoldVertices == 0 && degenerateTriangles == 0; }
+    bool oriented() const { return misorientedEdges == 0; }
+};
+
+// O(triangles log triangles); the same numbers for any number of threads.
+MeshTopology topologyOf(const TriangleMesh& mesh);
+
+// Merges points that are equal to the bit, as a reader of STL must. Triangles keep their order.
+TriangleMesh mergeEqualPoints(const TriangleMesh& mesh);
+
+}  // namespace isowave

@@ -1,0 +1,45 @@
+// From signs or distances to a B-spline field whose sign agrees with the input at every lattice point near
+// the surface. One function each; see docs/volume.md for the passes and what was measured.
+#pragma once
+
+#include <cstdint>
+
+#include "base/progress.h"
+#include "volume/field.h"
+
+namespace isowave {
+
+struct FitReport {
+    std::int64_t latticePoints = 0;    // lattice points of I whose sign was compared with the input's
+    std::int64_t disagreeing = 0;      // of these, how many disagree in the end (0 unless repair gave up)
+    int filterPasses = 0;              // Laplacian passes (fitBinary)
+    int repairPasses = 0;              // passes until no lattice point needed repair
+    std::int64_t repaired = 0;         // control points changed by the repair, counted once a pass
+};
+
+struct BinaryFitOptions {
+    int passes = 3;          // Laplacian passes; 3 smooths staircases, 0 leaves the ±K weights
+    double K = 1.0;
+};
+
+struct DistanceFitOptions {
+    double halfWidth = 4.0;  // w in voxels: the distance is clamped to ±w and scaled so that ±w becomes ±K
+    double band = 2.0;       // b in voxels: nodes with a corner nearer than b are kept. 0 < b <= w
+    double K = 1.0;
+};
+
+// E§2: ±K weights on I (G dilated by {-1,0,1,2}), `passes` of the discrete Laplacian filter on I, then the
+// repair. For masks and labels, whose distances would be staircases.
+BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options = {},
+                       FitReport* report = nullptr, const Progress& progress = {});
+
+// Signed distance -> field by quasi-interpolation c = (8v_i - v_{i-1} - v_{i+1})/6 on each axis, then the
+// repair.
+// distance: signed distance in voxels (index space), negative inside, valid and active at least where
+// |distance| < halfWidth; inactive voxels and tiles hold any value of the right sign with magnitude >= halfWidth
+// (a level set of that half-width is exactly this).
+// nodes of G: those with a corner where |distance| < band; a node whose corner signs differ is always kept.
+BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options = {},
+                         FitReport* report = nullptr, const Progress& progress = {});
+
+}  // namespace isowave

@@ -1,0 +1,47 @@
+// The pyramid: a field taken apart, step by step, down to one node; any step can be had back.
+//
+// step s is the field after s directions have been halved (axes cycle x, y, z); step 0 is the field itself.
+// level l is step 3l.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "wavelets/direction.h"
+
+namespace isowave::wavelets {
+
+// What turned the field of step s into that of step s + 1.
+struct Step {
+    int axis = 0;                 // the direction that was halved
+    Shape::Ptr shape;             // of step s
+    DetailGrid::Ptr details;
+};
+
+struct Pyramid {
+    BSplineField coarsest;        // the field of step steps.size()
+    std::vector<Step> steps;      // finest first
+    double K = 1.0;
+    // Where the solid came from: "input.path", "input.kind", "fit", ... Written into the file; free text.
+    std::map<std::string, std::string> source;
+
+    int stepCount() const { return static_cast<int>(steps.size()); }
+    // The field of a step, 0 <= step <= stepCount().
+    BSplineField field(int step, const Progress& progress = {}) const;
+    // Details of all steps plus the control points of the coarsest field.
+    std::int64_t coefficientsStored() const;
+};
+
+struct AnalyseOptions {
+    int maxSteps = 1 << 20;       // stop after so many steps, or when one node (4^3 control points) is left
+};
+
+// Takes the field apart. onStep(step, field) is called with every field on the way, step 0 first: levels can be
+// polygonized without keeping them all.
+Pyramid analyse(const BSplineField& field, const AnalyseOptions& options = {}, const Progress& progress = {},
+                const std::function<void(int step, const BSplineField&)>& onStep = {});
+
+}  // namespace isowave::wavelets
