@@ -1,4 +1,12 @@
 // Images: voxels with spacing, orientation and origin, as ITK reads them. No ITK type appears here.
+//
+//   Image head = readImage("cranium.nhdr");                        // NIfTI, NRRD, MetaImage, TIFF, DICOM
+//   Image scan = readImage("dicom/", {.series = "1.2.840"});       // a folder of slices
+//   Image raw  = readImage("matrix.dat", {.spacing = {{0.957, 0.957, 1.5}},
+//                                         .raw = RawLayout{.size = {256, 256, 108}, .type = "int16"}});
+//
+// World coordinates are millimetres, LPS (x to the patient's left, y to the back, z to the head), as in ITK
+// and DICOM; NIfTI's RAS is turned by ITK.
 #pragma once
 
 #include <array>
@@ -13,37 +21,55 @@
 
 namespace isowave {
 
-// x is fastest: voxel (x,y,z) is values[x + size[0]*(y + size[1]*z)]; index 0 is the first stored voxel whatever
-// extent the file was cropped from.
+// x is fastest: voxel (x,y,z) is values[x + size[0]*(y + size[1]*z)]; index 0 is the first stored voxel
+// whatever extent the file was cropped from.
 struct Image {
     std::array<std::int64_t, 3> size{};
     std::vector<float> values;
-    openvdb::math::Mat4d indexToWorld = openvdb::math::Mat4d::identity();  // row vectors: world = (i,j,k,1) * M; LPS, mm
-    std::string componentType;      // as stored: "int16", "uint8", "float32", ...
-    bool integral = false;          // componentType is an integer type
-    std::string format;             // "NRRD", "NIfTI", "DICOM series", ...
+    // Row vectors: world = (i,j,k,1) * M. Row a is spacing[a] times the direction of axis a; row 3 the
+    // origin.
+    openvdb::math::Mat4d indexToWorld = openvdb::math::Mat4d::identity();
+    std::string componentType;          // as stored: "int16", "uint8", "float32", ...
+    bool integral = false;              // componentType is an integer type
+    std::string format;                 // "NRRD", "NIfTI", "DICOM series", ...
     std::vector<std::string> warnings;  // one line each: "TIFF holds no z spacing; 1 assumed, give --spacing"
 
     std::int64_t voxelCount() const { return size[0] * size[1] * size[2]; }
+    // Lengths of the three rows of indexToWorld, in mm.
+    std::array<double, 3> spacing() const;
 };
 
-// What a headerless file needs, and what --spacing overrides in formats that lose it.
+// What a headerless file lacks.
 struct RawLayout {
-    std::optional<std::array<std::int64_t, 3>> size;  // voxels, x fastest
-    std::string type;                                 // int8 uint8 int16 uint16 int32 uint32 float32 float64
-    std::optional<std::array<double, 3>> spacing;     // mm
+    std::array<std::int64_t, 3> size{};  // voxels, x fastest
+    std::string type;                    // int8 uint8 int16 uint16 int32 uint32 float32 float64
     bool bigEndian = false;
-    std::int64_t headerBytes = 0;                     // skipped at the start of the file
+    std::int64_t headerBytes = 0;  // skipped at the start of the file
 };
 
-// Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, or (when raw.size is
-// given) a headerless file. Throws InputError for: missing, empty or truncated file, a 2D image, RGB voxels,
-// NaN or infinite voxels (says where), spacing <= 0, a direction matrix that cannot be inverted, a folder with
-// several series (lists them).
-Image readImage(const std::filesystem::path& path, const RawLayout& raw = {}, const Progress& progress = {});
+struct ImageReadOptions {
+    // mm. For formats that hold none (raw, TIFF, PNG) it is the spacing; elsewhere it replaces the header's,
+    // with a warning when the two differ by more than 0.1 %.
+    std::optional<std::array<double, 3>> spacing;
+    // Given: the file is headerless, whatever its name ends in.
+    std::optional<RawLayout> raw;
+    // Which series of a DICOM folder: any unique part of its UID or of its description.
+    std::optional<std::string> series;
+    // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
+    // machine has. A header that asks for more is refused before anything is allocated.
+    std::int64_t memoryLimit = 0;
+};
 
-// Header only: everything but `values`.
-Image readImageHeader(const std::filesystem::path& path, const RawLayout& raw = {});
+// Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
+// DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty
+// or truncated file, a 2D image, a time series, RGB or vector voxels, NaN or infinite voxels (says where),
+// spacing <= 0, a direction matrix that cannot be inverted, a folder with several series (lists them), a size
+// that memory cannot hold. Throws Cancelled when progress says so.
+Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
+                const Progress& progress = {});
+
+// Header only: everything but `values`. Truncation is found where file sizes show it.
+Image readImageHeader(const std::filesystem::path& path, const ImageReadOptions& options = {});
 
 // Whether a path looks like something readImage() reads (by extension, or a folder).
 bool isImagePath(const std::filesystem::path& path);
