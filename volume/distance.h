@@ -16,17 +16,36 @@ namespace isowave {
 // voxels (index space), negative inside, exact sign at every lattice point, clamped to ±halfWidth; active where
 // |value| < halfWidth; inactive voxels and tiles ±halfWidth by sign; background +halfWidth.
 
-// mesh: closed (repairMesh). transform: index -> world, uniform scale. Distances by openvdb::tools::meshToVolume;
-// the sign of a lattice point is its winding number with respect to the mesh (nested voids are outside), found
-// on exact fixed-point coordinates, so that a ray never slips between two triangles.
-// evenOdd: count crossings instead of winding, for meshes whose orientation was not consistent as read.
+// mesh: closed (repairMesh). transform: index -> world, uniform scale. Distances by
+// openvdb::tools::meshToVolume; the sign of a lattice point is its winding number with respect to the mesh
+// (nested voids are outside, parts that overlap are one solid), found on fixed-point coordinates (2^-20
+// voxel) with exact integer arithmetic, so that a ray never slips between two triangles. A lattice point on
+// the surface gets 2^-20 of either sign, never 0. evenOdd: count crossings instead of winding, for meshes
+// whose orientation cannot be trusted (MeshRepairReport::evenOdd). Throws InputError: mesh not closed, or
+// more than 2^20 voxels across.
 openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
-                                         double halfWidth, bool evenOdd = false, const Progress& progress = {});
+                                         double halfWidth, bool evenOdd = false,
+                                         const Progress& progress = {});
+
+// Voxel size, in the mesh's units, for which the mesh's longest axis spans `voxels` voxels.
+// REQUIRES: voxels > 0, a mesh of non-zero extent (repairMesh).
+double voxelForCount(const TriangleMesh& mesh, double voxels);
+
+// The lattice for a mesh: cubes of edge `voxel`, axes along the world's. The low corner of the mesh's
+// bounding box gets index coordinates (f, f, f), f = (3 - sqrt 5)/2 = 0.382. f is irrational and far from 0
+// and 1: with a whole number of voxels across, faces at any rational fraction of the extent keep clear of
+// lattice planes, where distances would be 0 and signs a matter of taste. REQUIRES: voxel > 0.
+openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double voxel);
+
+// How many lattice points distanceFromMesh will hold active, before it is run: area / voxel^2 * 2 halfWidth,
+// but no more than the bounding box, widened by halfWidth, has. About 1.3 times too much on thin walls, whose
+// bands overlap. A point of the band takes about 5 bytes in a grid, and 20 while it is made.
+double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWidth);
 
 struct ImageSolid {
-    double iso = 0.5;          // inside where value > iso
-    bool invert = false;       // inside where value < iso
-    bool openBorder = false;   // true: no cap; the border's values continue outwards instead of "outside"
+    double iso = 0.5;         // inside where value > iso
+    bool invert = false;      // inside where value < iso
+    bool openBorder = false;  // true: no cap; the border's values continue outwards instead of "outside"
 };
 
 // Distances, taken in index space, to the zero set of the voxels' trilinear interpolation (sub-voxel), by
