@@ -44,12 +44,13 @@ void AtomicFile::commit() {
         const int failed = ::fsync(fd);
         ::close(fd);
         if (failed != 0 && errno != EINVAL && errno != EROFS)
-            throw OperationError(place_.string(),
-                                 std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
+            throw OperationError(place_.string(), std::string("writing failed (") + std::strerror(errno) +
+                                                      "); is the disk full?");
     }
     std::error_code error;
     std::filesystem::rename(temporary_, place_, error);
-    if (error) throw OperationError(place_.string(), "cannot put the finished file here (" + error.message() + ")");
+    if (error)
+        throw OperationError(place_.string(), "cannot put the finished file here (" + error.message() + ")");
     committed_ = true;
 }
 

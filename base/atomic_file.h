@@ -1,4 +1,5 @@
-// A file that appears whole or not at all: written under a temporary name beside its place, renamed at the end.
+// A file that appears whole or not at all: written under a temporary name beside its place, renamed at the
+// end.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +17,13 @@ class AtomicFile {
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    // Throws std::ios_base::failure on a failed write (disk full); commit() turns its own into OperationError.
+    // Throws std::ios_base::failure on a failed write (disk full); commit() turns its own into
+    // OperationError.
     std::ofstream& stream() { return stream_; }
     const std::filesystem::path& temporary() const { return temporary_; }
 
-    // Flushes to the disk, closes, renames. Throws OperationError and leaves the place untouched when the disk
-    // is full or the rename fails.
+    // Flushes to the disk, closes, renames. Throws OperationError and leaves the place untouched when the
+    // disk is full or the rename fails.
     void commit();
 
   private:

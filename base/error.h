@@ -17,7 +17,8 @@ class InputError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
     // object: the file, grid or mesh;  what: the rest of the line.
-    InputError(const std::string& object, const std::string& what) : std::runtime_error(object + ": " + what) {}
+    InputError(const std::string& object, const std::string& what)
+        : std::runtime_error(object + ": " + what) {}
 };
 
 // The operation itself failed: a file could not be written, memory would not suffice.

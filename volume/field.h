@@ -49,8 +49,8 @@ double evaluate(const BSplineField& field, const openvdb::Vec3d& x);
 // Index-space gradient of F at x.
 openvdb::Vec3d evaluateGradient(const BSplineField& field, const openvdb::Vec3d& x);
 
-// Number of nodes that the field needs: voxels i such that the control points i-1 .. i+2 on every axis are all
-// known ("defined nodes" of E-T2).
+// Number of nodes that the field needs: voxels i such that the control points i-1 .. i+2 on every axis are
+// all known ("defined nodes" of E-T2).
 std::int64_t definedNodeCount(const BSplineField& field);
 
 }  // namespace isowave

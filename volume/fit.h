@@ -10,15 +10,15 @@
 namespace isowave {
 
 struct FitReport {
-    std::int64_t latticePoints = 0;    // lattice points of I whose sign was compared with the input's
-    std::int64_t disagreeing = 0;      // of these, how many disagree in the end (0 unless repair gave up)
-    int filterPasses = 0;              // Laplacian passes (fitBinary)
-    int repairPasses = 0;              // passes until no lattice point needed repair
-    std::int64_t repaired = 0;         // control points changed by the repair, counted once a pass
+    std::int64_t latticePoints = 0;  // lattice points of I whose sign was compared with the input's
+    std::int64_t disagreeing = 0;    // of these, how many disagree in the end (0 unless repair gave up)
+    int filterPasses = 0;            // Laplacian passes (fitBinary)
+    int repairPasses = 0;            // passes until no lattice point needed repair
+    std::int64_t repaired = 0;       // control points changed by the repair, counted once a pass
 };
 
 struct BinaryFitOptions {
-    int passes = 3;          // Laplacian passes; 3 smooths staircases, 0 leaves the ±K weights
+    int passes = 3;  // Laplacian passes; 3 smooths staircases, 0 leaves the ±K weights
     double K = 1.0;
 };
 
@@ -36,9 +36,9 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
 // Signed distance -> field by quasi-interpolation c = (8v_i - v_{i-1} - v_{i+1})/6 on each axis, then the
 // repair.
 // distance: signed distance in voxels (index space), negative inside, valid and active at least where
-// |distance| < halfWidth; inactive voxels and tiles hold any value of the right sign with magnitude >= halfWidth
-// (a level set of that half-width is exactly this).
-// nodes of G: those with a corner where |distance| < band; a node whose corner signs differ is always kept.
+// |distance| < halfWidth; inactive voxels and tiles hold any value of the right sign with magnitude >=
+// halfWidth (a level set of that half-width is exactly this). nodes of G: those with a corner where
+// |distance| < band; a node whose corner signs differ is always kept.
 BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options = {},
                          FitReport* report = nullptr, const Progress& progress = {});
 

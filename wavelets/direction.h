@@ -1,7 +1,9 @@
-// One direction: every line of a field along one axis, each of its intervals analysed on its own, in parallel.
+// One direction: every line of a field along one axis, each of its intervals analysed on its own, in
+// parallel.
 //
-// Threads own columns of leaves (leaves that share the two other coordinates); a fine column maps to one coarse
-// column, so no two threads write to the same leaf and the result does not depend on their number, to the bit.
+// Threads own columns of leaves (leaves that share the two other coordinates); a fine column maps to one
+// coarse column, so no two threads write to the same leaf and the result does not depend on their number, to
+// the bit.
 #pragma once
 
 #include "base/progress.h"
@@ -13,7 +15,7 @@ namespace isowave::wavelets {
 using DetailGrid = openvdb::FloatGrid;
 
 struct DirectionResult {
-    BSplineField coarse;         // transform scaled by 2 along the axis; nothing shifts
+    BSplineField coarse;  // transform scaled by 2 along the axis; nothing shifts
     DetailGrid::Ptr details;
 };
 
@@ -21,7 +23,7 @@ struct DirectionResult {
 DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progress& progress = {});
 
 // The inverse; fineShape is the shape that the fine field had.
-BSplineField synthesiseDirection(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
-                                 int axis, const Progress& progress = {});
+BSplineField synthesiseDirection(const BSplineField& coarse, const DetailGrid& details,
+                                 const Shape& fineShape, int axis, const Progress& progress = {});
 
 }  // namespace isowave::wavelets

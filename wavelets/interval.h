@@ -1,5 +1,5 @@
-// The interval algebra: cubic B-spline wavelets on a cut-off domain, one interval of known control points at a
-// time. No grid in here; curves2d/ and the 3D direction both stand on it.
+// The interval algebra: cubic B-spline wavelets on a cut-off domain, one interval of known control points at
+// a time. No grid in here; curves2d/ and the 3D direction both stand on it.
 //
 // Notation (E = Esteve, Brunet, Vinacua: Multiresolution for algebraic curves and surfaces using wavelets):
 //   f  fine control points x_0 .. x_{2n+2}, at lattice positions first .. last, both odd
@@ -27,7 +27,8 @@
 
 namespace isowave::wavelets {
 
-// Largest error of a round trip of one interval in double, relative to K. Seen: see tests/wavelets/interval_test.
+// Largest error of a round trip of one interval in double, relative to K. Seen: see
+// tests/wavelets/interval_test.
 inline constexpr double kRoundTrip = 1e-13;
 
 // Accessory points added beyond either end of an interval; coefficients of each kind rejected at either end.
@@ -51,7 +52,7 @@ struct Interval {
     std::int64_t fineSize() const { return last - first + 1; }               // 2n + 3
     std::int64_t coarseSize() const { return coarseIntervals() + 3; }
     std::int64_t detailSize() const { return coarseIntervals(); }
-    std::int64_t firstCoarse() const { return (first - 1) / 2; }   // exact: first is odd
+    std::int64_t firstCoarse() const { return (first - 1) / 2; }  // exact: first is odd
     std::int64_t lastCoarse() const { return (last + 1) / 2; }
     std::int64_t firstDetail() const { return firstCoarse() + 1; }
     friend bool operator==(const Interval&, const Interval&) = default;
@@ -61,8 +62,8 @@ struct Interval {
 // outwards to odd positions, neighbours whose ends are <= kJoin apart joined. Replaces the content of `out`.
 void joinRuns(std::span<const Run> runs, std::vector<Interval>& out);
 
-// Analysis and synthesis of one interval. Holds scratch memory: one object a thread; no call allocates once the
-// longest interval has been seen. Results do not depend on the history of calls.
+// Analysis and synthesis of one interval. Holds scratch memory: one object a thread; no call allocates once
+// the longest interval has been seen. Results do not depend on the history of calls.
 class IntervalTransform {
   public:
     IntervalTransform();

@@ -16,14 +16,14 @@ namespace isowave::wavelets {
 
 // What turned the field of step s into that of step s + 1.
 struct Step {
-    int axis = 0;                 // the direction that was halved
-    Shape::Ptr shape;             // of step s
+    int axis = 0;      // the direction that was halved
+    Shape::Ptr shape;  // of step s
     DetailGrid::Ptr details;
 };
 
 struct Pyramid {
-    BSplineField coarsest;        // the field of step steps.size()
-    std::vector<Step> steps;      // finest first
+    BSplineField coarsest;    // the field of step steps.size()
+    std::vector<Step> steps;  // finest first
     double K = 1.0;
     // Where the solid came from: "input.path", "input.kind", "fit", ... Written into the file; free text.
     std::map<std::string, std::string> source;
@@ -36,11 +36,11 @@ struct Pyramid {
 };
 
 struct AnalyseOptions {
-    int maxSteps = 1 << 20;       // stop after so many steps, or when one node (4^3 control points) is left
+    int maxSteps = 1 << 20;  // stop after so many steps, or when one node (4^3 control points) is left
 };
 
-// Takes the field apart. onStep(step, field) is called with every field on the way, step 0 first: levels can be
-// polygonized without keeping them all.
+// Takes the field apart. onStep(step, field) is called with every field on the way, step 0 first: levels can
+// be polygonized without keeping them all.
 Pyramid analyse(const BSplineField& field, const AnalyseOptions& options = {}, const Progress& progress = {},
                 const std::function<void(int step, const BSplineField&)>& onStep = {});
 

@@ -1,4 +1,5 @@
-// The pyramid's file: one .vdb with a grid for each part, which vdb_print lists. docs/interfaces.md, "pyramid file".
+// The pyramid's file: one .vdb with a grid for each part, which vdb_print lists. docs/interfaces.md, "pyramid
+// file".
 #pragma once
 
 #include <filesystem>
