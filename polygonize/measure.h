@@ -10,38 +10,61 @@
 
 namespace isowave {
 
-// Number of pairs of triangles that intersect other than in a shared vertex or edge. Exact predicates.
+// Number of pairs of triangles that intersect other than in a shared vertex or edge. Exact predicates, so the
+// answer does not depend on rounding, on the order of triangles or on the number of threads.
+//   no shared vertex    the closed triangles have a point in common (touching counts)
+//   one shared vertex   the triangles meet somewhere else too
+//   one shared edge     they lie in one plane and overlap (a fold)
+//   three shared        the same triangle twice
+// "Shared" goes by index: merge equal points first (mergeEqualPoints), or every neighbour counts. Any index
+// mesh will do, also one with holes or non-manifold edges. Triangles whose corners lie exactly on a line have
+// no inside and are left out.
 std::int64_t countSelfIntersections(const TriangleMesh& mesh, const Progress& progress = {});
 
 // Distances from samples of one surface to another, in world units.
+//
+// Samples are the corners and the centroid of every piece; a piece is a triangle, or, with a `spacing`, what
+// is left of it after halving the longest edge until no point of the piece is farther than `spacing` from one
+// of the piece's samples. A function v is integrated over a piece of area A as
+//   A/12 (v(a) + v(b) + v(c) + 9 v(centroid)),   exact for polynomials of degree 2;
+// that is exact for the square of a distance that varies linearly over the piece.
 struct OneSidedDistance {
-    double mean = 0, rms = 0;   // weighted by area
-    double max = 0;             // largest over the samples: a lower bound of the Hausdorff distance
-    double maxBound = 0;        // max + the largest distance of any point of the surface to a sample: an upper bound
-    std::int64_t samples = 0;
+    double mean = 0, rms = 0;  // weighted by area (by number of pieces where the surface has no area)
+    double max = 0;            // largest over the samples: a lower bound of the one-sided Hausdorff distance
+    // An upper bound of it: no point of a piece is farther from the target than the largest sample of the
+    // piece's nearest third (two corners and the centroid) plus that third's covering radius, because a
+    // distance changes by at most the way walked. Falls towards `max` as spacing -> 0.
+    double maxBound = 0;
+    double area = 0;           // of the surface that the samples lie on
+    std::int64_t samples = 0;  // distances that were computed
 };
 
 struct MeshComparison {
     OneSidedDistance aToB, bToA;
-    double mean = 0, rms = 0, max = 0, maxBound = 0;  // symmetric: mean and rms over both, max of the two
-    double volumeA = 0, volumeB = 0;
-    double volumeDifference = 0;                      // volumeB - volumeA
+    // Symmetric: mean and rms over both surfaces together, weighted by area; max and maxBound the larger of
+    // two.
+    double mean = 0, rms = 0, max = 0, maxBound = 0;
+    double volumeA = 0, volumeB = 0;  // signed: positive for outward triangles of a closed mesh
+    double volumeDifference = 0;      // volumeB - volumeA
 };
 
-// A surface made ready for many distance queries (an AABB tree). Build once, ask from many threads.
+// A surface made ready for many distance queries (an AABB tree). Build once, ask from many threads. Keeps its
+// own copy of the mesh.
 class DistanceTarget {
   public:
-    // REQUIRES: at least one triangle.
+    // REQUIRES: at least one triangle; finite points.
     explicit DistanceTarget(const TriangleMesh& mesh);
     ~DistanceTarget();
     DistanceTarget(DistanceTarget&&) noexcept;
     DistanceTarget& operator=(DistanceTarget&&) noexcept;
 
+    // From p to the nearest point of the surface; triangles without area count as the segments that they are.
     double distance(const Point& p) const;
 
-    // Samples of `from`: vertices and centroids of its triangles, subdivided until no point of the surface is
-    // farther than `spacing` (world units) from a sample; 0 = vertices and centroids only.
-    OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0, const Progress& progress = {}) const;
+    // spacing: world units (0.5 = half a millimetre for images); 0 = corners and centroids of triangles only.
+    // An empty `from` gives zeros. The same result, to the bit, for any number of threads.
+    OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0,
+                                  const Progress& progress = {}) const;
 
   private:
     struct Tree;
