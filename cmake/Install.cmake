@@ -1,21 +1,31 @@
-# isowave::isowave: the whole library under one name. Installed with a config and a version file.
+# The installed package: find_package(isowave) gives isowave::isowave, the whole library under one name, and each
+# module by its own (isowave::volume, isowave::wavelets ...). isowave::measure is left out of isowave::isowave: it
+# links CGAL's GPL packages, and who wants that shall say so.
+include(CMakePackageConfigHelpers)
+
 add_library(isowave INTERFACE)
 add_library(isowave::isowave ALIAS isowave)
-set(modules base volume wavelets polygonize)
-foreach(module ${modules})
+set(umbrella base volume wavelets polygonize)
+foreach(module ${umbrella})
   target_link_libraries(isowave INTERFACE isowave::${module})
 endforeach()
 
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/isowave)
 get_property(targets GLOBAL PROPERTY ISOWAVE_MODULES)
 install(TARGETS isowave ${targets} EXPORT isowaveTargets)
-install(EXPORT isowaveTargets NAMESPACE isowave:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isowave)
-foreach(module ${modules})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isowave
-          FILES_MATCHING PATTERN "*.h")
+install(EXPORT isowaveTargets NAMESPACE isowave:: DESTINATION ${package_dir})
+
+# Headers keep their folders: #include "wavelets/interval.h" with include/isowave on the path.
+foreach(module ${umbrella} curves2d subdivision)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${module})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isowave
+            FILES_MATCHING PATTERN "*.h")
+  endif()
 endforeach()
-include(CMakePackageConfigHelpers)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
 configure_package_config_file(cmake/isowaveConfig.cmake.in ${CMAKE_BINARY_DIR}/isowaveConfig.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isowave)
+  INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/isowaveConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/isowaveConfig.cmake ${CMAKE_BINARY_DIR}/isowaveConfigVersion.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isowave)
+        DESTINATION ${package_dir})
