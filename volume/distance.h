@@ -13,8 +13,8 @@
 namespace isowave {
 
 // Every function below returns a FloatGrid whose transform takes lattice points to the world, with values in
-// voxels (index space), negative inside, exact sign at every lattice point, clamped to ±halfWidth; active where
-// |value| < halfWidth; inactive voxels and tiles ±halfWidth by sign; background +halfWidth.
+// voxels (index space), negative inside, exact sign at every lattice point, clamped to ±halfWidth; active
+// where |value| < halfWidth; inactive voxels and tiles ±halfWidth by sign; background +halfWidth.
 
 // mesh: closed (repairMesh). transform: index -> world, uniform scale. Distances by
 // openvdb::tools::meshToVolume; the sign of a lattice point is its winding number with respect to the mesh
@@ -42,6 +42,10 @@ openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double 
 // bands overlap. A point of the band takes about 5 bytes in a grid, and 20 while it is made.
 double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWidth);
 
+// With an open border the border's voxels continue this many voxels outwards before the cap; a mesh is then
+// cut off at the border itself (dropOutside() in polygonize/).
+inline constexpr int kOpenBorder = 16;
+
 struct ImageSolid {
     double iso = 0.5;         // inside where value > iso
     bool invert = false;      // inside where value < iso
@@ -57,15 +61,17 @@ openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& 
 openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet, double iso, double halfWidth,
                                              const Progress& progress = {});
 
-// f(x) = signed distance in voxels at index-space point x, evaluated at every lattice point of [low, high]; the
-// rest of space is outside. For tests and analytic solids.
+// f(x) = signed distance in voxels at index-space point x, evaluated at every lattice point of [low, high];
+// the rest of space is outside. For tests and analytic solids.
 openvdb::FloatGrid::Ptr distanceFromFunction(const std::function<double(const openvdb::Vec3d&)>& f,
                                              const openvdb::CoordBBox& box, double halfWidth);
 
-// Lattice point i is inside where image value > iso (or < with invert), or, with a label, where value == label.
-// The voxels of the image are the lattice points; beyond the border everything is outside, unless openBorder.
+// Lattice point i is inside where image value > iso (or < with invert), or, with a label, where value ==
+// label. The voxels of the image are the lattice points; beyond the border everything is outside, unless
+// openBorder.
 NodeCollection nodesFromImage(const Image& image, const ImageSolid& solid, const Progress& progress = {});
-NodeCollection nodesFromLabel(const Image& image, double label, bool openBorder = false, const Progress& progress = {});
+NodeCollection nodesFromLabel(const Image& image, double label, bool openBorder = false,
+                              const Progress& progress = {});
 
 // The nodes whose corner signs differ. inside: value = inside everywhere (its active states are ignored).
 NodeCollection nodesFromSigns(const openvdb::BoolGrid& inside);

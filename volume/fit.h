@@ -9,6 +9,10 @@
 
 namespace isowave {
 
+// Both fits move the lattice's origin, by a multiple of 8 on each axis, where control points would lie below
+// -1, and shift the transform the other way: every field then ends at a single node. World coordinates do not
+// change.
+
 struct FitReport {
     std::int64_t latticePoints = 0;  // lattice points of I whose sign was compared with the input's
     std::int64_t disagreeing = 0;    // of these, how many disagree in the end (0 unless repair gave up)

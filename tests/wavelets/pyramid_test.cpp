@@ -1,0 +1,239 @@
+// The promises of direction.h and pyramid.h on the whole zoo, and agreement with the oracle.
+#include "wavelets/pyramid.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/tools/Count.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "zoo/zoo.h"
+
+namespace isowave::wavelets {
+namespace {
+
+// Largest difference of control points over both known sets; infinite where the known sets differ.
+double difference(const BSplineField& a, const BSplineField& b) {
+    if (a.controlPointCount() != b.controlPointCount()) return INFINITY;
+    const auto other = b.controlPoints->getConstAccessor();
+    double largest = 0;
+    for (auto c = a.controlPoints->cbeginValueOn(); c; ++c) {
+        if (!other.isValueOn(c.getCoord())) return INFINITY;
+        largest = std::max(largest, std::abs(double(*c) - other.getValue(c.getCoord())));
+    }
+    return largest;
+}
+
+bool sameToTheBit(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
+    if (!a.tree().hasSameTopology(b.tree())) return false;
+    for (auto v = a.cbeginValueAll(); v; ++v)
+        if (b.tree().getValue(v.getCoord()) != *v) return false;
+    return true;
+}
+
+TEST(Pyramid, RoundTripOfTheWholeZooIsWithinTenToTheMinusFiveOfK) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        const Pyramid pyramid = analyse(field);
+        const BSplineField back = pyramid.field(0);
+        EXPECT_LT(difference(field, back), 1e-5 * field.K) << name;  // seen 6e-7
+        EXPECT_EQ(back.transform(), field.transform()) << name;
+    }
+}
+
+TEST(Pyramid, EverySolidEndsAtOneNode) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        const Pyramid pyramid = analyse(field);
+        EXPECT_EQ(pyramid.coarsest.controlPointCount(), field.controlPointCount() == 0 ? 0 : 64) << name;
+    }
+}
+
+TEST(Pyramid, AnyStepComesBackAsItWasOnTheWayDown) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        std::vector<BSplineField> onTheWay;
+        const Pyramid pyramid = analyse(field, {}, {}, [&](int step, const BSplineField& f) {
+            EXPECT_EQ(step, static_cast<int>(onTheWay.size()));
+            onTheWay.push_back(f);
+        });
+        ASSERT_EQ(onTheWay.size(), pyramid.steps.size() + 1);
+        for (int step = 0; step <= pyramid.stepCount(); step += 4)
+            EXPECT_LT(difference(onTheWay[step], pyramid.field(step)), 1e-5 * field.K)
+                << name << " step " << step;
+    }
+}
+
+TEST(Pyramid, ControlPointsOutsideIAreExactlyPlusOrMinusK) {
+    for (const auto& [name, field] : zoo::allFields())
+        analyse(field, {}, {}, [&, K = static_cast<float>(field.K)](int step, const BSplineField& f) {
+            const auto inside = f.shape->getConstAccessor();
+            ASSERT_TRUE(f.shape->tree().hasSameTopology(f.controlPoints->tree())) << name << step;
+            ASSERT_FALSE(f.controlPoints->tree().hasActiveTiles()) << name << step;
+            EXPECT_EQ(f.controlPoints->background(), K);
+            for (auto c = f.controlPoints->cbeginValueOff(); c; ++c)
+                ASSERT_EQ(*c, inside.getValue(c.getCoord()) ? -K : K)
+                    << name << " step " << step << c.getCoord();
+        });
+}
+
+TEST(Pyramid, SignsOfACoarseShapeAreThoseOfTheEvenFinePoints) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        const Pyramid pyramid = analyse(field);
+        for (int step = 0; step + 1 < pyramid.stepCount(); ++step) {
+            const auto& fine = *pyramid.steps[step].shape;
+            const auto& coarse = *pyramid.steps[step + 1].shape;
+            const int axis = pyramid.steps[step].axis;
+            for (auto v = coarse.cbeginValueAll(); v; ++v) {
+                openvdb::Coord c = v.getCoord();
+                c[axis] *= 2;
+                ASSERT_EQ(*v, fine.tree().getValue(c)) << name << " step " << step;
+            }
+        }
+    }
+}
+
+TEST(Pyramid, RunsAreFourOrLongerAfterEveryStep) {
+    for (const auto& [name, field] : zoo::allFields())
+        analyse(field, {}, {}, [&](int step, const BSplineField& f) {
+            const auto known = f.controlPoints->getConstAccessor();
+            for (auto c = f.controlPoints->cbeginValueOn(); c; ++c)
+                for (int axis = 0; axis < 3; ++axis) {
+                    openvdb::Coord before = c.getCoord(), at = c.getCoord();
+                    before[axis] -= 1;
+                    if (known.isValueOn(before)) continue;
+                    int length = 0;
+                    for (; known.isValueOn(at); ++at[axis]) ++length;
+                    ASSERT_GE(length, 4) << name << " step " << step << " axis " << axis << c.getCoord();
+                }
+        });
+}
+
+TEST(Pyramid, ResultsAreTheSameToTheBitForOneTwoAndFourThreads) {
+    const auto solid = zoo::noisySolids()[0];
+    const BSplineField field = zoo::binaryField(solid);
+    std::vector<Pyramid> results;
+    for (const int threads : {1, 2, 4}) {
+        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_TRUE(sameToTheBit(*zoo::binaryField(solid).controlPoints, *field.controlPoints));
+        results.push_back(analyse(field));
+        const BSplineField back = results.back().field(0);
+        EXPECT_TRUE(sameToTheBit(*back.controlPoints, *results[0].field(0).controlPoints));
+    }
+    for (const Pyramid& p : results) {
+        ASSERT_EQ(p.steps.size(), results[0].steps.size());
+        EXPECT_TRUE(sameToTheBit(*p.coarsest.controlPoints, *results[0].coarsest.controlPoints));
+        for (std::size_t s = 0; s < p.steps.size(); ++s)
+            EXPECT_TRUE(sameToTheBit(*p.steps[s].details, *results[0].steps[s].details));
+    }
+}
+
+TEST(Pyramid, ALevelScalesTheTransformByTwoAndNothingShifts) {
+    BSplineField field = zoo::binaryField(zoo::thinSolids()[1]);
+    const openvdb::Mat4R skew(0.8, 0.1, 0., 0., -0.2, 1.1, 0.3, 0., 0., 0.05, 2.5, 0., 100., -20., 7., 1.);
+    field.controlPoints->setTransform(openvdb::math::Transform::createLinearTransform(skew));
+    field.shape->setTransform(openvdb::math::Transform::createLinearTransform(skew));
+    const Pyramid pyramid = analyse(field, {.maxSteps = 4});  // x, y, z, x
+    const openvdb::Vec3d coarse(3, -2, 5), fine(12, -4, 10);
+    EXPECT_LT(
+        (pyramid.coarsest.transform().indexToWorld(coarse) - field.transform().indexToWorld(fine)).length(),
+        1e-12);
+}
+
+TEST(Pyramid, ShiftingTheSolidByAnEvenVectorShiftsTheResult) {
+    auto solid = zoo::cadSolids()[0];
+    const openvdb::Coord centre(40);  // no control point below -1, so the fits keep the lattice's origin
+    solid.inside = [inside = solid.inside, centre](const openvdb::Coord& c) { return inside(c - centre); };
+    solid.box.translate(centre);
+    auto shifted = solid;
+    const openvdb::Coord by(8, -16, 24);  // 8 = 2^3: even on the first nine steps' grids
+    shifted.inside = [&](const openvdb::Coord& c) { return solid.inside(c - by); };
+    shifted.box.translate(by);
+    const Pyramid a = analyse(zoo::binaryField(solid), {.maxSteps = 9});
+    const Pyramid b = analyse(zoo::binaryField(shifted), {.maxSteps = 9});
+    const openvdb::Coord coarseBy(1, -2, 3);
+    ASSERT_EQ(a.coarsest.controlPointCount(), b.coarsest.controlPointCount());
+    for (auto c = a.coarsest.controlPoints->cbeginValueOn(); c; ++c)
+        ASSERT_EQ(*c, b.coarsest.controlPoints->tree().getValue(c.getCoord() + coarseBy));
+}
+
+TEST(Pyramid, StoredCoefficientsStayNearTheNumberOfControlPoints) {
+    for (const auto& solid : zoo::smoothSolids()) {
+        const BSplineField field = zoo::distanceField(solid);
+        const double ratio = double(analyse(field).coefficientsStored()) / double(field.controlPointCount());
+        EXPECT_GE(ratio, 1.0);
+        EXPECT_LT(ratio, 1.45) << solid.name;  // these solids are small: 24 voxels across
+    }
+}
+
+TEST(Pyramid, CancellingStopsAndLeavesNothing) {
+    const BSplineField field = zoo::binaryField(zoo::smoothSolids()[0]);
+    int asked = 0;
+    Progress progress;
+    progress.stopRequested = [&asked] { return ++asked > 3; };
+    EXPECT_THROW(analyse(field, {}, progress), Cancelled);
+}
+
+TEST(Pyramid, RefusesAShapeWhoseRunsAreTooShort) {
+    BSplineField field = zoo::binaryField(zoo::thinSolids()[0]);
+    // Lattice point (3, -2, 7) of the solid; the fit has moved the origin.
+    field.shape->tree().setValueOff(
+        field.shape->transform().worldToIndexNodeCentered(openvdb::Vec3d(3, -2, 7)));
+    EXPECT_THROW(analyseDirection(field, 0), InputError);
+}
+
+// ---- the oracle
+// -------------------------------------------------------------------------------------------------------
+
+BSplineField fieldFrom(const nlohmann::json& points, double K) {
+    BSplineField field;
+    field.K = K;
+    field.controlPoints = openvdb::FloatGrid::create(static_cast<float>(K));
+    field.shape = Shape::create(false);
+    for (std::size_t i = 0; i < points["at"].size(); ++i) {
+        const auto& at = points["at"][i];
+        const openvdb::Coord c(at[0], at[1], at[2]);
+        field.controlPoints->tree().setValue(c, points["value"][i].get<float>());
+        field.shape->tree().setValueOn(c, points["inside"][i] == 1);
+    }
+    return field;
+}
+
+class Oracle : public testing::TestWithParam<const char*> {};
+
+TEST_P(Oracle, AgreesOnCoefficientsDetailsAndShapes) {
+    std::ifstream file(std::string(ISOWAVE_TEST_DATA "/oracle/") + GetParam() + ".json");
+    ASSERT_TRUE(file);
+    const auto golden = nlohmann::json::parse(file);
+    // The golden solids have no inside region without control points, so unknown points are all outside.
+    const BSplineField field = fieldFrom(golden["fields"][0], golden["K"]);
+    int compared = 0;
+    const Pyramid pyramid =
+        analyse(field, {.maxSteps = int(golden["details"].size())}, {}, [&](int step, const BSplineField& f) {
+            const BSplineField expected = fieldFrom(golden["fields"][step], golden["K"]);
+            ASSERT_LT(difference(f, expected), 1e-6) << "step " << step;
+            for (auto v = expected.shape->cbeginValueOn(); v; ++v)
+                ASSERT_EQ(f.shape->tree().getValue(v.getCoord()), *v) << v.getCoord();
+            ++compared;
+        });
+    EXPECT_EQ(compared, 8);
+    for (int step = 0; step < pyramid.stepCount(); ++step) {
+        const auto& expected = golden["details"][step];
+        const auto& details = *pyramid.steps[step].details;
+        ASSERT_EQ(pyramid.steps[step].axis, expected["axis"].get<int>());
+        ASSERT_EQ(details.activeVoxelCount(), expected["at"].size());
+        for (std::size_t i = 0; i < expected["at"].size(); ++i) {
+            const auto& at = expected["at"][i];
+            const openvdb::Coord c(at[0], at[1], at[2]);
+            ASSERT_TRUE(details.tree().isValueOn(c)) << c;
+            ASSERT_NEAR(details.tree().getValue(c), expected["value"][i].get<double>(), 1e-6)
+                << c;  // seen 4e-7
+        }
+    }
+    EXPECT_LT(difference(field, pyramid.field(0)), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(ThreeFields, Oracle, testing::Values("part", "sheet", "noise"));
+
+}  // namespace
+}  // namespace isowave::wavelets

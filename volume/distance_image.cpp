@@ -1,0 +1,196 @@
+// Distances from images, level sets and functions.
+#include <openvdb/tools/FastSweeping.h>
+#include <openvdb/tools/Morphology.h>
+#include <openvdb/tree/LeafManager.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/error.h"
+#include "volume/blocks.h"
+#include "volume/distance.h"
+#include "volume/tiles.h"
+
+namespace isowave {
+namespace {
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+using openvdb::tools::NN_FACE_EDGE_VERTEX;
+
+template <class Tree>
+using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
+
+// Lattice points within `reach` voxels (in the maximum norm) of a node whose corner signs differ.
+openvdb::MaskTree bandAround(const NodeCollection& nodes, int reach) {
+    openvdb::MaskTree band(nodes.grid->constTree(), false, openvdb::TopologyCopy());
+    openvdb::tools::dilateActiveValues(band, reach + 1, NN_FACE_EDGE_VERTEX, openvdb::tools::EXPAND_TILES);
+    band.voxelizeActiveTiles();
+    return band;
+}
+
+// Distances of the band's lattice points, in voxels, to the zero set of `excess` (value - iso: positive
+// inside), whose sign is that of `signs`; clamped to ±halfWidth; every other place ±halfWidth. sweep:
+// FastSweeping puts the points beside the surface at 1/sqrt(sum 1/d_a^2), d_a the distance to the crossing
+// along axis a (exact for planes), and solves |grad| = 1 away from them.
+openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeCollection& signs,
+                                  double halfWidth, const Progress& progress) {
+    progress("distances", 0.3);
+    auto distance = openvdb::tools::fogToSdf(*excess, 0.0f);
+    excess.reset();
+    progress("distances", 0.8);
+    const auto w = static_cast<float>(halfWidth);
+    auto result = openvdb::FloatGrid::create(w);
+    result->setGridClass(openvdb::GRID_LEVEL_SET);
+    if (!distance) return result;  // no crossing
+    result->setTree(distance->treePtr());
+    distance.reset();
+    const openvdb::BoolTree& inside = signs.grid->constTree();
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(result->tree());
+    leaves.foreach ([&inside, w](FloatLeaf& leaf, std::size_t) {
+        ConstAccessor<openvdb::BoolTree> accessor(inside);
+        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i) {
+            const float d = leaf.isValueOn(i) ? std::min(std::abs(leaf.getValue(i)), w) : w;
+            // A point on the surface itself counts as outside, at +0.
+            leaf.setValueOnly(i, accessor.getValue(leaf.offsetToGlobalCoord(i)) ? -std::max(d, 1e-6f) : d);
+            leaf.setActiveState(i, d < w);
+        }
+    });
+    result->tree().root().setBackground(w, false);
+    const auto valueAt = [&inside, w] {
+        return [accessor = ConstAccessor<openvdb::BoolTree>(inside), w](const openvdb::Coord& c) {
+            return accessor.getValue(c) ? -w : w;
+        };
+    };
+    fillTiles(result->tree(), valueAt);
+    fillRootTiles(
+        result->tree(), inside, [](const openvdb::Coord& c) { return c; }, valueAt);
+    progress("distances", 1);
+    return result;
+}
+
+// A grid on the band with values from makeValue()(coord), inactive elsewhere with the sign of `signs`.
+template <class MakeValue>
+openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const MakeValue& makeValue) {
+    auto grid = openvdb::FloatGrid::create(-1.0f);
+    grid->setTree(std::make_shared<openvdb::FloatTree>(band, -1.0f, openvdb::TopologyCopy()));
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
+    leaves.foreach ([&makeValue](FloatLeaf& leaf, std::size_t) {
+        auto value = makeValue();
+        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
+            leaf.setValueOnly(i, value(leaf.offsetToGlobalCoord(i)));
+    });
+    return grid;
+}
+
+int reachOf(double halfWidth) { return static_cast<int>(std::ceil(halfWidth)) + 1; }
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
+                                          const Progress& progress) {
+    const NodeCollection nodes = nodesFromImage(image, solid, progress);
+    progress("distances", 0);
+    const double orientation = solid.invert ? -1 : 1;
+    const auto excessAt = [&](const openvdb::Coord& c) {
+        openvdb::Coord inner;
+        bool beyond = false;
+        for (int a = 0; a < 3; ++a) {
+            inner[a] = std::clamp(c[a], 0, static_cast<int>(image.size[a]) - 1);
+            const int margin = solid.openBorder ? kOpenBorder : 0;
+            beyond = beyond || c[a] < -margin || c[a] >= image.size[a] + margin;
+        }
+        const double value = image.values[static_cast<std::size_t>(
+            inner[0] + image.size[0] * (inner[1] + image.size[1] * inner[2]))];
+        const double excess = orientation * (value - solid.iso);
+        // The cap: beyond the border the nearest voxel is mirrored at the iso value, so a solid that touches
+        // the border ends half a voxel outside it.
+        return static_cast<float>(beyond && excess > 0 ? -excess : excess);
+    };
+    const auto band = bandAround(nodes, reachOf(halfWidth));
+    auto result = sweepBand(excessOn(band, [&] { return excessAt; }), nodes, halfWidth, progress);
+    result->setTransform(openvdb::math::Transform::createLinearTransform(image.indexToWorld));
+    return result;
+}
+
+openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet, double iso, double halfWidth,
+                                             const Progress& progress) {
+    const openvdb::FloatTree& tree = levelSet.constTree();
+    const auto isoValue = static_cast<float>(iso);
+    auto inside = openvdb::BoolGrid::create(levelSet.background() < isoValue);
+    if (levelSet.background() < isoValue)
+        throw InputError(
+            levelSet.getName().empty() ? "level set" : levelSet.getName(),
+            "the background lies inside (below the iso value), so the solid is unbounded; a level set is "
+            "positive outside: use --invert if yours is the other way round");
+    inside->setTree(std::make_shared<openvdb::BoolTree>(tree, false, openvdb::TopologyCopy()));
+    openvdb::tree::LeafManager<openvdb::BoolTree> leaves(inside->tree());
+    leaves.foreach ([&](openvdb::BoolTree::LeafNodeType& leaf, std::size_t) {
+        const FloatLeaf* values = tree.probeConstLeaf(leaf.origin());
+        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
+            leaf.setValueOnly(i, values->getValue(i) < isoValue);
+    });
+    const auto insideAt = [&] {
+        return [accessor = ConstAccessor<openvdb::FloatTree>(tree), isoValue](const openvdb::Coord& c) {
+            return accessor.getValue(c) < isoValue;
+        };
+    };
+    fillTiles(inside->tree(), insideAt);
+    fillRootTiles(
+        inside->tree(), tree, [](const openvdb::Coord& c) { return c; }, insideAt);
+    const NodeCollection nodes = nodesFromSigns(*inside);
+    progress("distances", 0);
+    const auto band = bandAround(nodes, reachOf(halfWidth));
+    auto result = sweepBand(excessOn(band,
+                                     [&] {
+                                         return [accessor = ConstAccessor<openvdb::FloatTree>(tree),
+                                                 isoValue](const openvdb::Coord& c) {
+                                             return isoValue - accessor.getValue(c);
+                                         };
+                                     }),
+                            nodes, halfWidth, progress);
+    result->setTransform(levelSet.transform().copy());
+    return result;
+}
+
+openvdb::FloatGrid::Ptr distanceFromFunction(const std::function<double(const openvdb::Vec3d&)>& f,
+                                             const openvdb::CoordBBox& box, double halfWidth) {
+    const auto w = static_cast<float>(halfWidth);
+    auto grid = openvdb::FloatGrid::create(w);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    struct Block {
+        std::unique_ptr<FloatLeaf> leaf;
+        bool inside = false;
+    };
+    const auto none = [] { return 0; };
+    forEachBlock<Block>(
+        box, {}, "sampling",
+        [&](const openvdb::Coord& origin, int) {
+            Block block{std::make_unique<FloatLeaf>(origin, w, false), false};
+            int below = 0, near = 0;
+            for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i) {
+                const openvdb::Coord c = block.leaf->offsetToGlobalCoord(i);
+                const double d =
+                    box.isInside(c) ? std::clamp(f(c.asVec3d()), -halfWidth, halfWidth) : halfWidth;
+                block.leaf->setValueOnly(i, static_cast<float>(d));
+                const bool active = std::abs(static_cast<float>(d)) < w;
+                block.leaf->setActiveState(i, active);
+                below += d < 0;
+                near += active;
+            }
+            block.inside = below > 0;
+            if (near == 0 && (below == 0 || below == static_cast<int>(FloatLeaf::SIZE))) block.leaf.reset();
+            return block;
+        },
+        none,
+        [&](const openvdb::Coord& origin, Block& block) {
+            if (block.leaf)
+                grid->tree().addLeaf(block.leaf.release());
+            else if (block.inside)
+                grid->tree().addTile(1, origin, -w, false);
+        });
+    grid->tree().prune();
+    return grid;
+}
+
+}  // namespace isowave

@@ -1,0 +1,403 @@
+#include "volume/fit.h"
+
+#include <openvdb/tools/Morphology.h>
+#include <openvdb/tree/LeafManager.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+#include "volume/padded_leaf.h"
+#include "volume/tiles.h"
+
+// Passes of both fits:
+//   known   kept nodes -> their corners -> dilated by one: G + {-1,0,1,2} on each axis
+//   origin  the lattice's origin moved so that no control point lies below -1
+//   shape   the input's sign at every lattice point, in leaves and tiles
+//   weigh   control points on I (±K, or quasi-interpolated distances)
+//   smooth  (binary only) Laplacian passes
+//   repair  until every lattice point of I has the input's sign by a margin
+// invariant of weigh, smooth and repair: what is not known stays ±K.
+
+namespace isowave {
+namespace {
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+using BoolLeaf = openvdb::BoolTree::LeafNodeType;
+using Mask = openvdb::MaskTree;
+using MaskLeaf = Mask::LeafNodeType;
+
+template <class Tree>
+using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
+
+// ---- known
+// ----------------------------------------------------------------------------------------------------------
+
+// The lattice points that are corners of a kept node: voxel i is one when a node of i - {0,1}^3 is kept.
+Mask cornersOf(const Mask& nodes) {
+    Mask corners;
+    for (auto leaf = nodes.cbeginLeaf(); leaf; ++leaf)
+        for (int b = 0; b < 8; ++b)
+            corners.touchLeaf(leaf->origin().offsetBy(8 * (b >> 2), 8 * ((b >> 1) & 1), 8 * (b & 1)));
+    openvdb::tree::LeafManager<Mask> leaves(corners);
+    leaves.foreach ([&nodes](MaskLeaf& leaf, std::size_t) {
+        ConstAccessor<Mask> accessor(nodes);
+        PaddedLeaf<bool, 1, 0> kept;
+        kept.gather(accessor, leaf.origin(),
+                    [](const MaskLeaf& l, openvdb::Index o) { return l.isValueOn(o); });
+        for (int x = 0; x < 8; ++x)
+            for (int y = 0; y < 8; ++y)
+                for (int z = 0; z < 8; ++z) {
+                    bool corner = false;
+                    for (int b = 0; b < 8; ++b)
+                        corner = corner || kept.at(x - (b >> 2), y - ((b >> 1) & 1), z - (b & 1));
+                    if (corner) leaf.setValueOn(static_cast<openvdb::Index>(x << 6 | y << 3 | z));
+                }
+    });
+    return corners;
+}
+
+// I = G dilated by {-1,0,1,2} on each axis = corners of G dilated by {-1,0,1}.
+Mask knownAround(const Mask& nodes) {
+    Mask known = cornersOf(nodes);
+    openvdb::tools::dilateActiveValues(known, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::EXPAND_TILES);
+    known.voxelizeActiveTiles();
+    // Leaves without a single known point would only cost memory.
+    std::vector<openvdb::Coord> empty;
+    for (auto leaf = known.cbeginLeaf(); leaf; ++leaf)
+        if (leaf->isEmpty()) empty.push_back(leaf->origin());
+    for (const auto& origin : empty) known.addTile(1, origin, false, false);
+    return known;
+}
+
+// ---- origin
+// ---------------------------------------------------------------------------------------------------------
+
+// Halving a domain that lies at -1 and above ends at one node, control points -1 .. 2. One that straddles the
+// origin ends at -2 .. 2, two nodes, for ever. So the lattice is shifted, by whole leaves, until nothing lies
+// below -1. Returns the shift: lattice point i of the source is lattice point i + shift of the field.
+openvdb::Coord moveOrigin(Mask& known) {
+    openvdb::CoordBBox box;
+    known.evalActiveVoxelBoundingBox(box);
+    openvdb::Coord shift(0);
+    if (known.empty()) return shift;
+    for (int a = 0; a < 3; ++a)
+        if (box.min()[a] < -1) shift[a] = -(box.min()[a] & ~7);
+    if (shift == openvdb::Coord(0)) return shift;
+    std::vector<MaskLeaf*> leaves;
+    known.stealNodes(leaves);
+    Mask moved;
+    for (MaskLeaf* leaf : leaves) {
+        leaf->setOrigin(leaf->origin() + shift);
+        moved.addLeaf(leaf);
+    }
+    known.clear();
+    known.merge(moved);
+    return shift;
+}
+
+openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& transform,
+                                               const openvdb::Coord& shift) {
+    auto result = transform.copy();
+    result->preTranslate(-shift.asVec3d());
+    return result;
+}
+
+// ---- shape
+// ----------------------------------------------------------------------------------------------------------
+
+// makeInside() returns Coord (of the field) -> bool for one thread; source: a tree, in its own coordinates,
+// whose root regions cover every inside region.
+template <class Source, class MakeInside>
+Shape::Ptr makeShape(const Mask& known, const Source& source, const openvdb::Coord& shift,
+                     const MakeInside& makeInside) {
+    auto shape = Shape::create(false);
+    shape->setTree(std::make_shared<openvdb::BoolTree>(known, false, false, openvdb::TopologyCopy()));
+    openvdb::tree::LeafManager<openvdb::BoolTree> leaves(shape->tree());
+    leaves.foreach ([&makeInside](BoolLeaf& leaf, std::size_t) {
+        auto inside = makeInside();
+        for (openvdb::Index i = 0; i < BoolLeaf::SIZE; ++i)
+            leaf.setValueOnly(i, inside(leaf.offsetToGlobalCoord(i)));
+    });
+    fillTiles(shape->tree(), makeInside);
+    fillRootTiles(
+        shape->tree(), source, [&shift](const openvdb::Coord& c) { return c + shift; }, makeInside);
+    return shape;
+}
+
+// Control points of +-K by sign everywhere, active on I.
+BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transform& transform) {
+    BSplineField field;
+    field.K = K;
+    field.shape = std::move(shape);
+    field.shape->setTransform(transform.copy());
+    const auto k = static_cast<float>(K);
+    field.controlPoints = openvdb::FloatGrid::create(k);
+    field.controlPoints->setTree(
+        std::make_shared<openvdb::FloatTree>(field.shape->tree(), k, k, openvdb::TopologyCopy()));
+    field.controlPoints->setTransform(transform.copy());
+    field.controlPoints->setName("field");
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
+    const openvdb::BoolTree& signs = field.shape->tree();
+    leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
+        const BoolLeaf* inside = signs.probeConstLeaf(leaf.origin());
+        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
+            leaf.setValueOnly(i, inside->getValue(i) ? -k : k);
+    });
+    const auto valueAt = [&signs, k] {
+        return [accessor = ConstAccessor<openvdb::BoolTree>(signs), k](const openvdb::Coord& c) {
+            return accessor.getValue(c) ? -k : k;
+        };
+    };
+    fillTiles(field.controlPoints->tree(), valueAt);
+    fillRootTiles(
+        field.controlPoints->tree(), signs, [](const openvdb::Coord& c) { return c; }, valueAt);
+    return field;
+}
+
+// ---- smooth
+// ---------------------------------------------------------------------------------------------------------
+
+// One pass of the discrete Laplacian filter on I: c <- (c + mean of the six neighbours)/2, all at once.
+void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const openvdb::FloatTree& tree) {
+    leaves.foreach ([&](FloatLeaf& leaf, std::size_t index) {
+        ConstAccessor<openvdb::FloatTree> accessor(tree);
+        PaddedLeaf<double, 1, 1> c;
+        c.gather(accessor, leaf.origin());
+        auto& out = leaves.getBuffer(index, 1);
+        for (auto known = leaf.cbeginValueOn(); known; ++known) {
+            const int x = int(known.pos() >> 6), y = int(known.pos() >> 3) & 7, z = int(known.pos()) & 7;
+            const double sum = c.at(x - 1, y, z) + c.at(x + 1, y, z) + c.at(x, y - 1, z) + c.at(x, y + 1, z) +
+                               c.at(x, y, z - 1) + c.at(x, y, z + 1);
+            out.setValue(known.pos(), static_cast<float>(0.5 * (c.at(x, y, z) + sum / 6)));
+        }
+    });
+    leaves.swapLeafBuffer(1);
+}
+
+// ---- repair
+// ---------------------------------------------------------------------------------------------------------
+
+// While a lattice point of I has s F < floor: its control point c <- c + target s - F. A change by delta
+// moves F there by (2/3)^3 delta. Leaves whose neighbourhood did not change in the last pass are skipped.
+class Repair {
+  public:
+    // floor, target: fractions of K.
+    Repair(BSplineField& field, double floor, double target)
+        : field_(field),
+          leaves_(field.controlPoints->tree(), 1),
+          floor_(floor * field.K),
+          target_(target * field.K) {
+        for (std::size_t i = 0; i < leaves_.leafCount(); ++i) indexOf_[leaves_.leaf(i).origin()] = i;
+    }
+
+    void run(FitReport& report, const Progress& progress) {
+        std::vector<char> active(leaves_.leafCount(), 1);
+        for (int pass = 0; pass < kMostPasses; ++pass) {
+            progress.check();
+            std::vector<char> changed(leaves_.leafCount(), 0);
+            const std::int64_t count = onePass(active, changed);
+            if (count == 0) return;
+            report.repaired += count;
+            ++report.repairPasses;
+            active = neighboursOf(changed);
+        }
+    }
+
+  private:
+    // White noise at 50 % takes 20 passes; a pass that many times over means that the repair cannot succeed.
+    static constexpr int kMostPasses = 1000;
+
+    std::int64_t onePass(const std::vector<char>& active, std::vector<char>& changed) {
+        std::atomic<std::int64_t> count{0};
+        const openvdb::FloatTree& tree = field_.controlPoints->constTree();
+        const openvdb::BoolTree& shape = field_.shape->constTree();
+        leaves_.foreach ([&](FloatLeaf& leaf, std::size_t i) {
+            auto& out = leaves_.getBuffer(i, 1);
+            out = leaf.buffer();
+            if (!active[i]) return;
+            ConstAccessor<openvdb::FloatTree> accessor(tree);
+            PaddedLeaf<double, 1, 1> c;
+            c.gather(accessor, leaf.origin());
+            std::array<double, 512> F;
+            filterThreeTaps(c, 4.0 / 6, 1.0 / 6, F);
+            const BoolLeaf* inside = shape.probeConstLeaf(leaf.origin());
+            std::int64_t here = 0;
+            for (auto known = leaf.cbeginValueOn(); known; ++known) {
+                const double s = inside->getValue(known.pos()) ? -1 : 1;
+                if (s * F[known.pos()] >= floor_) continue;
+                out.setValue(known.pos(), static_cast<float>(*known + target_ * s - F[known.pos()]));
+                ++here;
+            }
+            changed[i] = here > 0;
+            count += here;
+        });
+        leaves_.swapLeafBuffer(1);
+        return count;
+    }
+
+    std::vector<char> neighboursOf(const std::vector<char>& changed) const {
+        std::vector<char> near(changed.size(), 0);
+        for (std::size_t i = 0; i < changed.size(); ++i) {
+            if (!changed[i]) continue;
+            const openvdb::Coord origin = leaves_.leaf(i).origin();
+            for (int b = 0; b < 27; ++b) {
+                const auto at =
+                    indexOf_.find(origin.offsetBy(8 * (b / 9 - 1), 8 * (b / 3 % 3 - 1), 8 * (b % 3 - 1)));
+                if (at != indexOf_.end()) near[at->second] = 1;
+            }
+        }
+        return near;
+    }
+
+    struct CoordHash {
+        std::size_t operator()(const openvdb::Coord& c) const { return c.hash<20>(); }
+    };
+
+    BSplineField& field_;
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves_;
+    std::unordered_map<openvdb::Coord, std::size_t, CoordHash> indexOf_;
+    double floor_, target_;
+};
+
+// Compares the sign of F with the input's at every lattice point where a known control point has a say: I
+// dilated by one. Beyond it F is ±K exactly.
+void countDisagreement(const BSplineField& field, FitReport& report) {
+    Mask reach(field.shape->tree(), false, openvdb::TopologyCopy());
+    openvdb::tools::dilateActiveValues(reach, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::EXPAND_TILES);
+    reach.voxelizeActiveTiles();
+    std::atomic<std::int64_t> points{0}, disagreeing{0};
+    openvdb::tree::LeafManager<Mask> leaves(reach);
+    leaves.foreach ([&](MaskLeaf& leaf, std::size_t) {
+        ConstAccessor<openvdb::FloatTree> accessor(field.controlPoints->constTree());
+        ConstAccessor<openvdb::BoolTree> signs(field.shape->constTree());
+        PaddedLeaf<double, 1, 1> c;
+        c.gather(accessor, leaf.origin());
+        std::array<double, 512> F;
+        filterThreeTaps(c, 4.0 / 6, 1.0 / 6, F);
+        std::int64_t here = 0, wrong = 0;
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel, ++here)
+            wrong += signs.getValue(voxel.getCoord()) != (F[voxel.pos()] < 0);
+        points += here;
+        disagreeing += wrong;
+    });
+    report.latticePoints = points;
+    report.disagreeing = disagreeing;
+}
+
+// E§2 asks for the sign only; the margin keeps every node stabbed when the field is next filtered or stored.
+constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
+
+// A distance fit is right to a hundredth of a voxel where it disagrees at all, so it is moved as little as
+// will do: floor and target in voxels.
+constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
+
+FitReport finish(BSplineField& field, double floor, double target, FitReport report,
+                 const Progress& progress) {
+    progress("fitting", 0.5);
+    Repair(field, floor, target).run(report, progress);
+    countDisagreement(field, report);
+    progress("fitting", 1);
+    return report;
+}
+
+// ---- distances
+// --------------------------------------------------------------------------------------------------------
+
+// Nodes with a corner nearer than `band`, and nodes whose corner signs differ.
+Mask nodesNear(const openvdb::FloatTree& distance, float band) {
+    Mask nodes;
+    for (auto leaf = distance.cbeginLeaf(); leaf; ++leaf)
+        for (int b = 0; b < 8; ++b)
+            nodes.touchLeaf(leaf->origin().offsetBy(-8 * (b >> 2), -8 * ((b >> 1) & 1), -8 * (b & 1)));
+    openvdb::tree::LeafManager<Mask> leaves(nodes);
+    leaves.foreach ([&distance, band](MaskLeaf& leaf, std::size_t) {
+        ConstAccessor<openvdb::FloatTree> accessor(distance);
+        PaddedLeaf<float, 0, 1> d;
+        d.gather(accessor, leaf.origin());
+        for (int x = 0; x < 8; ++x)
+            for (int y = 0; y < 8; ++y)
+                for (int z = 0; z < 8; ++z) {
+                    float nearest = d.at(x, y, z);
+                    bool stabbed = false;
+                    for (int b = 1; b < 8; ++b) {
+                        const float corner = d.at(x + (b >> 2), y + ((b >> 1) & 1), z + (b & 1));
+                        stabbed = stabbed || (corner < 0) != (d.at(x, y, z) < 0);
+                        if (std::abs(corner) < std::abs(nearest)) nearest = corner;
+                    }
+                    if (stabbed || std::abs(nearest) < band)
+                        leaf.setValueOn(static_cast<openvdb::Index>(x << 6 | y << 3 | z));
+                }
+    });
+    return nodes;
+}
+
+}  // namespace
+
+BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options, FitReport* report,
+                       const Progress& progress) {
+    progress("fitting", 0);
+    const openvdb::BoolTree& signs = nodes.grid->constTree();
+    const Mask kept(signs, false, openvdb::TopologyCopy());
+    Mask known = knownAround(kept);
+    const openvdb::Coord shift = moveOrigin(known);
+    const auto makeInside = [&signs, &shift] {
+        return [accessor = ConstAccessor<openvdb::BoolTree>(signs), shift](const openvdb::Coord& c) {
+            return accessor.getValue(c - shift);
+        };
+    };
+    BSplineField field = makeField(makeShape(known, signs, shift, makeInside), options.K,
+                                   *shiftedTransform(nodes.grid->transform(), shift));
+    FitReport result;
+    if (options.passes > 0) {
+        openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree(), 1);
+        for (; result.filterPasses < options.passes; ++result.filterPasses) {
+            progress("fitting", 0.5 * result.filterPasses / options.passes);
+            laplacianPass(leaves, field.controlPoints->constTree());
+        }
+    }
+    result = finish(field, kBinaryFloor, kBinaryTarget, result, progress);
+    if (report) *report = result;
+    return field;
+}
+
+BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+                         FitReport* report, const Progress& progress) {
+    assert(0 < options.band && options.band <= options.halfWidth);
+    progress("fitting", 0);
+    const openvdb::FloatTree& d = distance.constTree();
+    Mask known = knownAround(nodesNear(d, static_cast<float>(options.band)));
+    const openvdb::Coord shift = moveOrigin(known);
+    const auto makeInside = [&d, &shift] {
+        return [accessor = ConstAccessor<openvdb::FloatTree>(d), shift](const openvdb::Coord& c) {
+            return accessor.getValue(c - shift) < 0;
+        };
+    };
+    BSplineField field = makeField(makeShape(known, d, shift, makeInside), options.K,
+                                   *shiftedTransform(distance.transform(), shift));
+
+    // Quasi-interpolation: on each axis c = (8 v_i - v_{i-1} - v_{i+1})/6, exact for cubics.
+    const double w = options.halfWidth, scale = options.K / w;
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
+    leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
+        ConstAccessor<openvdb::FloatTree> accessor(d);
+        PaddedLeaf<double, 1, 1> v;
+        v.gather(accessor, leaf.origin() - shift);
+        for (double& x : v.values) x = scale * std::clamp(x, -w, w);
+        std::array<double, 512> c;
+        filterThreeTaps(v, 8.0 / 6, -1.0 / 6, c);
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
+            leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
+    });
+    FitReport result = finish(field, kDistanceFloor / w, kDistanceTarget / w, {}, progress);
+    if (report) *report = result;
+    return field;
+}
+
+}  // namespace isowave

@@ -1,0 +1,81 @@
+// A leaf's 8^3 values with a margin of neighbours around them, as one dense block: stencils then run without
+// lookups.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "volume/vdb.h"
+
+namespace isowave {
+
+// Low, High: voxels of margin below and above on each axis. z is fastest, as in a leaf.
+template <class Value, int Low, int High>
+struct PaddedLeaf {
+    static constexpr int kSize = 8 + Low + High;
+    std::array<Value, kSize * kSize * kSize> values;
+
+    // x, y, z relative to the leaf's origin: -Low .. 7 + High.
+    static constexpr int index(int x, int y, int z) {
+        return ((x + Low) * kSize + (y + Low)) * kSize + (z + Low);
+    }
+    Value at(int x, int y, int z) const { return values[index(x, y, z)]; }
+
+    // Copies from the leaves and tiles around `origin` (of a leaf). read(leaf, offset) gives a leaf's value;
+    // the accessor gives that of a place without leaf, which is the same all over it.
+    template <class Accessor, class Read>
+    void gather(const Accessor& accessor, const openvdb::Coord& origin, const Read& read) {
+        using Leaf = typename Accessor::TreeType::LeafNodeType;
+        constexpr int kFrom = Low > 0 ? -1 : 0, kTo = High > 0 ? 1 : 0;
+        for (int bx = kFrom; bx <= kTo; ++bx)
+            for (int by = kFrom; by <= kTo; ++by)
+                for (int bz = kFrom; bz <= kTo; ++bz) {
+                    const openvdb::Coord at = origin.offsetBy(8 * bx, 8 * by, 8 * bz);
+                    const Leaf* leaf = accessor.template probeConstNode<Leaf>(at);
+                    const Value uniform = leaf ? Value() : static_cast<Value>(accessor.getValue(at));
+                    const auto low = [](int b) { return std::max(-Low, 8 * b); };
+                    const auto high = [](int b) { return std::min(7 + High, 8 * b + 7); };
+                    for (int x = low(bx); x <= high(bx); ++x)
+                        for (int y = low(by); y <= high(by); ++y) {
+                            Value* out = &values[index(x, y, low(bz))];
+                            const int offset = ((x & 7) << 6) | ((y & 7) << 3);
+                            for (int z = low(bz); z <= high(bz); ++z)
+                                *out++ = leaf ? read(*leaf, static_cast<openvdb::Index>(offset | (z & 7)))
+                                              : uniform;
+                        }
+                }
+    }
+    template <class Accessor>
+    void gather(const Accessor& accessor, const openvdb::Coord& origin) {
+        gather(accessor, origin, [](const auto& leaf, openvdb::Index offset) {
+            return static_cast<Value>(leaf.getValue(offset));
+        });
+    }
+};
+
+// Applies the symmetric three-tap filter (side, centre, side) on each axis to the inner 8^3 voxels of a block
+// with a margin of one. out: 512 values in a leaf's order.
+inline void filterThreeTaps(const PaddedLeaf<double, 1, 1>& block, double centre, double side,
+                            std::array<double, 512>& out) {
+    constexpr int kSize = PaddedLeaf<double, 1, 1>::kSize;
+    std::array<double, kSize * kSize * 8> alongZ;
+    for (int xy = 0; xy < kSize * kSize; ++xy)
+        for (int z = 0; z < 8; ++z) {
+            const double* p = &block.values[xy * kSize + z];
+            alongZ[xy * 8 + z] = side * (p[0] + p[2]) + centre * p[1];
+        }
+    std::array<double, kSize * 64> alongY;
+    for (int x = 0; x < kSize; ++x)
+        for (int y = 0; y < 8; ++y)
+            for (int z = 0; z < 8; ++z) {
+                const double* p = &alongZ[(x * kSize + y) * 8 + z];
+                alongY[x * 64 + y * 8 + z] = side * (p[0] + p[16]) + centre * p[8];
+            }
+    for (int x = 0; x < 8; ++x)
+        for (int yz = 0; yz < 64; ++yz) {
+            const double* p = &alongY[x * 64 + yz];
+            out[x * 64 + yz] = side * (p[0] + p[128]) + centre * p[64];
+        }
+}
+
+}  // namespace isowave
