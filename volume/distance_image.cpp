@@ -69,9 +69,11 @@ openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeColl
     return result;
 }
 
-// A grid on the band with values from makeValue()(coord), inactive elsewhere with the sign of `signs`.
+// A grid on the band with values from makeValue()(coord); elsewhere +-1 by sign, or the sweep would see a
+// surface between the band and a tile of the wrong sign.
 template <class MakeValue>
-openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const MakeValue& makeValue) {
+openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const NodeCollection& nodes,
+                                 const MakeValue& makeValue) {
     auto grid = openvdb::FloatGrid::create(-1.0f);
     grid->setTree(std::make_shared<openvdb::FloatTree>(band, -1.0f, openvdb::TopologyCopy()));
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
@@ -80,6 +82,15 @@ openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const MakeValue&
         for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
             leaf.setValueOnly(i, value(leaf.offsetToGlobalCoord(i)));
     });
+    const openvdb::BoolTree& inside = nodes.grid->constTree();
+    const auto signAt = [&inside] {
+        return [accessor = ConstAccessor<openvdb::BoolTree>(inside)](const openvdb::Coord& c) {
+            return accessor.getValue(c) ? 1.0f : -1.0f;
+        };
+    };
+    fillTiles(grid->tree(), signAt);
+    fillRootTiles(
+        grid->tree(), inside, [](const openvdb::Coord& c) { return c; }, signAt);
     return grid;
 }
 
@@ -108,7 +119,7 @@ openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& 
         return static_cast<float>(beyond && excess > 0 ? -excess : excess);
     };
     const auto band = bandAround(nodes, reachOf(halfWidth));
-    auto result = sweepBand(excessOn(band, [&] { return excessAt; }), nodes, halfWidth, progress);
+    auto result = sweepBand(excessOn(band, nodes, [&] { return excessAt; }), nodes, halfWidth, progress);
     result->setTransform(openvdb::math::Transform::createLinearTransform(image.indexToWorld));
     return result;
 }
@@ -141,7 +152,7 @@ openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet,
     const NodeCollection nodes = nodesFromSigns(*inside);
     progress("distances", 0);
     const auto band = bandAround(nodes, reachOf(halfWidth));
-    auto result = sweepBand(excessOn(band,
+    auto result = sweepBand(excessOn(band, nodes,
                                      [&] {
                                          return [accessor = ConstAccessor<openvdb::FloatTree>(tree),
                                                  isoValue](const openvdb::Coord& c) {

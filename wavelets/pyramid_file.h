@@ -1,5 +1,13 @@
-// The pyramid's file: one .vdb with a grid for each part, which vdb_print lists. docs/interfaces.md, "pyramid
-// file".
+// The pyramid's file: one .vdb with a grid for each part, which vdb_print lists.
+//
+// Grids (docs/interfaces.md, "pyramid file"), s = step, three digits:
+//   control_points   FloatGrid   the coarsest field: active = known, inactive ±K
+//   shape            BoolGrid    its shape: active = known, value = inside
+//   shape_s          BoolGrid    the shape of step s
+//   details_s        FloatGrid   the details that turn step s+1 into step s: active = stored
+// Metadata of the file:
+//   isowave:format   "pyramid"        isowave:version  1 (int32)      isowave:K  (double)
+//   isowave:axes     one of x, y, z for each step, finest first       isowave:source:KEY  free text
 #pragma once
 
 #include <filesystem>
@@ -13,10 +21,13 @@ inline constexpr int kPyramidFormatVersion = 1;
 // Temporary name, then rename. Throws OperationError.
 void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid);
 
-// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, parts missing.
+// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, parts missing,
+// parts that do not belong together (runs of known points shorter than 4, details elsewhere than the shape
+// needs them).
 Pyramid readPyramid(const std::filesystem::path& path);
 
-// Whether the file is a .vdb that calls itself a pyramid (reads the header only). False for anything else.
+// Whether the file is a .vdb that calls itself a pyramid, of whatever version. False for anything else,
+// missing files included.
 bool isPyramidFile(const std::filesystem::path& path);
 
 }  // namespace isowave::wavelets

@@ -1,0 +1,131 @@
+// The promises of wavelets/pyramid_file.h.
+#include "wavelets/pyramid_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "base/error.h"
+#include "volume/vdb_file.h"
+#include "zoo/zoo.h"
+
+namespace isowave::wavelets {
+namespace {
+
+std::filesystem::path freshFolder(const std::string& name) {
+    const auto folder = std::filesystem::temp_directory_path() / ("isowave_pyramid_" + name);
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    return folder;
+}
+
+std::string bytesOf(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void expectSame(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
+    ASSERT_TRUE(a.tree().hasSameTopology(b.tree()));
+    for (auto v = a.cbeginValueAll(); v; ++v) ASSERT_EQ(*v, b.tree().getValue(v.getCoord()));
+}
+
+Pyramid small() {
+    Pyramid pyramid = analyse(zoo::binaryField(zoo::thinSolids()[1]));
+    pyramid.source["input.path"] = "wall.nrrd";
+    pyramid.source["fit"] = "binary";
+    return pyramid;
+}
+
+TEST(PyramidFile, ComesBackToTheBitForTheWholeZoo) {
+    const auto folder = freshFolder("zoo");
+    for (const auto& [name, field] : zoo::allFields()) {
+        Pyramid pyramid = analyse(field);
+        pyramid.source["input.path"] = name;
+        writePyramid(folder / "a.pyramid.vdb", pyramid);
+        const Pyramid read = readPyramid(folder / "a.pyramid.vdb");
+        EXPECT_EQ(read.source, pyramid.source);
+        EXPECT_EQ(read.K, pyramid.K);
+        ASSERT_EQ(read.stepCount(), pyramid.stepCount());
+        EXPECT_EQ(read.coefficientsStored(), pyramid.coefficientsStored());
+        expectSame(*read.coarsest.controlPoints, *pyramid.coarsest.controlPoints);
+        expectSame(*read.field(0).controlPoints, *pyramid.field(0).controlPoints);
+        EXPECT_EQ(read.field(0).transform(), field.transform());
+    }
+}
+
+TEST(PyramidFile, TheSamePyramidIsTheSameBytes) {
+    const auto folder = freshFolder("bytes");
+    writePyramid(folder / "a.vdb", small());
+    writePyramid(folder / "b.vdb", small());
+    EXPECT_EQ(bytesOf(folder / "a.vdb"), bytesOf(folder / "b.vdb"));
+}
+
+TEST(PyramidFile, RejectsEveryTruncation) {
+    const auto folder = freshFolder("truncated");
+    writePyramid(folder / "whole.vdb", small());
+    const std::string whole = bytesOf(folder / "whole.vdb");
+    ASSERT_NO_THROW(readPyramid(folder / "whole.vdb"));
+    // Every length near either end, every 97th between.
+    for (std::size_t length = 0; length < whole.size();
+         length += length < 600 || length + 600 > whole.size() ? 1 : 97) {
+        std::ofstream(folder / "cut.vdb", std::ios::binary) << whole.substr(0, length);
+        EXPECT_THROW(readPyramid(folder / "cut.vdb"), InputError) << length << " of " << whole.size();
+    }
+}
+
+TEST(PyramidFile, RefusesAnotherVersionAndSaysWhich) {
+    const auto folder = freshFolder("version");
+    openvdb::MetaMap meta;
+    meta.insertMeta("isowave:format", openvdb::StringMetadata("pyramid"));
+    meta.insertMeta("isowave:version", openvdb::Int32Metadata(7));
+    writeVdb(folder / "new.vdb", {openvdb::FloatGrid::create()}, meta);
+    EXPECT_TRUE(isPyramidFile(folder / "new.vdb"));
+    try {
+        readPyramid(folder / "new.vdb");
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("version 7, expected 1"), std::string::npos) << e.what();
+    }
+}
+
+TEST(PyramidFile, RefusesWhatIsNotAPyramid) {
+    const auto folder = freshFolder("other");
+    const Pyramid pyramid = small();
+    writeField(folder / "field.vdb", pyramid.coarsest);
+    EXPECT_FALSE(isPyramidFile(folder / "field.vdb"));
+    EXPECT_THROW(readPyramid(folder / "field.vdb"), InputError);
+    EXPECT_FALSE(isPyramidFile(folder / "missing.vdb"));
+    EXPECT_THROW(readPyramid(folder / "missing.vdb"), InputError);
+    std::ofstream(folder / "text.vdb") << "not a grid";
+    EXPECT_FALSE(isPyramidFile(folder / "text.vdb"));
+    EXPECT_THROW(readPyramid(folder / "text.vdb"), InputError);
+}
+
+TEST(PyramidFile, NamesAMissingPart) {
+    const auto folder = freshFolder("part");
+    writePyramid(folder / "whole.vdb", small());
+    const VdbContent content = readVdb(folder / "whole.vdb");
+    openvdb::GridCPtrVec some;
+    for (const auto& grid : content.grids)
+        if (grid->getName() != "details_001") some.push_back(grid);
+    writeVdb(folder / "part.vdb", some, *content.metadata);
+    try {
+        readPyramid(folder / "part.vdb");
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("details_001"), std::string::npos) << e.what();
+    }
+}
+
+TEST(PyramidFile, PartsThatDoNotBelongTogetherAreRefusedNotCrashedOn) {
+    Pyramid pyramid = small();
+    pyramid.steps[0].shape = analyse(zoo::binaryField(zoo::noisySolids()[0])).steps[0].shape;
+    EXPECT_THROW(pyramid.field(0), InputError);
+    pyramid = small();
+    pyramid.steps[1].details = DetailGrid::create(0.0f);
+    EXPECT_THROW(pyramid.field(0), InputError);
+}
+
+}  // namespace
+}  // namespace isowave::wavelets

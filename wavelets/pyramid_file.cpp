@@ -1,0 +1,139 @@
+#include "wavelets/pyramid_file.h"
+
+#include <fmt/format.h>
+#include <openvdb/io/File.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "volume/vdb_file.h"
+
+namespace isowave::wavelets {
+namespace {
+
+constexpr const char* kFormat = "isowave:format";
+constexpr const char* kVersion = "isowave:version";
+constexpr const char* kK = "isowave:K";
+constexpr const char* kAxes = "isowave:axes";
+const std::string kSource = "isowave:source:";
+constexpr const char* kPyramid = "pyramid";
+
+template <class Grid>
+openvdb::GridBase::ConstPtr named(const typename Grid::ConstPtr& grid, const std::string& name) {
+    auto copy = grid->copy();  // shares the tree
+    auto mutableCopy = openvdb::ConstPtrCast<Grid>(copy);
+    mutableCopy->setName(name);
+    return mutableCopy;
+}
+
+// The parts of a file, by name.
+class Parts {
+  public:
+    Parts(std::string file, const openvdb::GridPtrVec& grids) : file_(std::move(file)) {
+        for (const auto& grid : grids) grids_[grid->getName()] = grid;
+    }
+
+    template <class Grid>
+    typename Grid::Ptr take(const std::string& name) const {
+        const auto at = grids_.find(name);
+        if (at == grids_.end())
+            throw InputError(file_,
+                             fmt::format("the pyramid's part '{}' is missing; the file is damaged", name));
+        auto grid = openvdb::gridPtrCast<Grid>(at->second);
+        if (!grid)
+            throw InputError(file_, fmt::format("the pyramid's part '{}' is a {} grid, expected {}", name,
+                                                at->second->type(), Grid::gridType()));
+        return grid;
+    }
+
+  private:
+    std::string file_;
+    std::map<std::string, openvdb::GridBase::Ptr> grids_;
+};
+
+template <class T>
+T metaValue(const std::string& file, const openvdb::MetaMap& map, const char* name) {
+    const auto meta = map.getMetadata<openvdb::TypedMetadata<T>>(name);
+    if (!meta)
+        throw InputError(file,
+                         fmt::format("the pyramid's metadatum '{}' is missing or of another type", name));
+    return meta->value();
+}
+
+void checkFormat(const std::string& file, const openvdb::MetaMap& meta) {
+    const auto format = meta.getMetadata<openvdb::StringMetadata>(kFormat);
+    if (!format || format->value() != kPyramid)
+        throw InputError(
+            file, "is a .vdb but not a pyramid; make one with: isowave analyse INPUT -o OUT.pyramid.vdb");
+    const int version = metaValue<openvdb::Int32>(file, meta, kVersion);
+    if (version != kPyramidFormatVersion)
+        throw InputError(
+            file, fmt::format("is a pyramid of format version {}, expected {}; write it again with this "
+                              "version of isowave, or read it with the one that wrote it",
+                              version, kPyramidFormatVersion));
+}
+
+}  // namespace
+
+void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
+    openvdb::MetaMap meta;
+    meta.insertMeta(kFormat, openvdb::StringMetadata(kPyramid));
+    meta.insertMeta(kVersion, openvdb::Int32Metadata(kPyramidFormatVersion));
+    meta.insertMeta(kK, openvdb::DoubleMetadata(pyramid.K));
+    std::string axes;
+    for (const Step& step : pyramid.steps) axes += "xyz"[step.axis];
+    meta.insertMeta(kAxes, openvdb::StringMetadata(axes));
+    for (const auto& [key, value] : pyramid.source)
+        meta.insertMeta(kSource + key, openvdb::StringMetadata(value));
+
+    openvdb::GridCPtrVec grids;
+    grids.push_back(named<openvdb::FloatGrid>(pyramid.coarsest.controlPoints, "control_points"));
+    grids.push_back(named<Shape>(pyramid.coarsest.shape, "shape"));
+    for (std::size_t s = 0; s < pyramid.steps.size(); ++s) {
+        grids.push_back(named<Shape>(pyramid.steps[s].shape, fmt::format("shape_{:03}", s)));
+        grids.push_back(named<DetailGrid>(pyramid.steps[s].details, fmt::format("details_{:03}", s)));
+    }
+    writeVdb(path, grids, meta);
+}
+
+Pyramid readPyramid(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    const VdbContent content = readVdb(path);
+    checkFormat(file, *content.metadata);
+    Pyramid pyramid;
+    pyramid.K = metaValue<double>(file, *content.metadata, kK);
+    if (!(pyramid.K > 0))
+        throw InputError(file, fmt::format("K is {}, expected a positive number", pyramid.K));
+    const std::string axes = metaValue<std::string>(file, *content.metadata, kAxes);
+    for (auto meta = content.metadata->beginMeta(); meta != content.metadata->endMeta(); ++meta)
+        if (meta->first.starts_with(kSource))
+            pyramid.source[meta->first.substr(kSource.size())] = meta->second->str();
+
+    const Parts parts(file, content.grids);
+    pyramid.coarsest.K = pyramid.K;
+    pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>("control_points");
+    pyramid.coarsest.shape = parts.take<Shape>("shape");
+    for (std::size_t s = 0; s < axes.size(); ++s) {
+        if (axes[s] < 'x' || axes[s] > 'z')
+            throw InputError(file, fmt::format("axis '{}' of step {}, expected x, y or z", axes[s], s));
+        pyramid.steps.push_back({axes[s] - 'x', parts.take<Shape>(fmt::format("shape_{:03}", s)),
+                                 parts.take<DetailGrid>(fmt::format("details_{:03}", s))});
+    }
+    return pyramid;
+}
+
+bool isPyramidFile(const std::filesystem::path& path) {
+    if (!std::filesystem::is_regular_file(path)) return false;
+    try {
+        initializeVdb();
+        openvdb::io::File file(path.string());
+        file.open(/*delayLoad=*/true);
+        const auto meta = file.getMetadata();
+        const auto format = meta ? meta->getMetadata<openvdb::StringMetadata>(kFormat) : nullptr;
+        return format && format->value() == kPyramid;
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+}  // namespace isowave::wavelets
