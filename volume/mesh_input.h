@@ -14,8 +14,7 @@ namespace isowave {
 // What a mesh file says besides its polygons.
 struct MeshFileInfo {
     std::string format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF"
-    std::string
-        space;  // "LPS", "RAS" or another word after SPACE= in a comment, as 3D Slicer writes; or empty
+    std::string space;   // the word after SPACE= in a comment, as 3D Slicer writes it: LPS, RAS; or empty
     std::int64_t polygons = 0;  // as listed, before they are cut into triangles
 };
 
@@ -25,6 +24,7 @@ struct MeshRepairReport {
     std::int64_t pointsMerged = 0;       // points that lay exactly on another one
     std::int64_t degenerateRemoved = 0;  // triangles with two equal corners
     std::int64_t duplicatesRemoved = 0;  // triangles listed more than once, either way round
+    std::int64_t looseRemoved = 0;       // lone triangles that bound nothing
     std::int64_t facesFlipped = 0;       // turned round so that neighbours agree
     std::int64_t holesFilled = 0;        // boundary loops closed by a fan
     std::int64_t boundaryEdges = 0;      // edges with one triangle, before filling
@@ -45,9 +45,10 @@ TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info = nu
                       const Progress& progress = {});
 
 struct RepairOptions {
-    // The longest loop of boundary edges to close, as a fraction of the bounding box's diagonal: 0.25 closes
-    // a hole of a twelfth of the diagonal across. 0 refuses every hole.
-    double maxHole = 0.25;
+    // The longest loop of boundary edges to close, as a fraction of the bounding box's diagonal: 0.5 closes a
+    // round hole of a sixth of the diagonal across (the holes under a scanned figure), not a missing side. 0
+    // refuses every hole.
+    double maxHole = 0.5;
 };
 
 // Makes a closed mesh out of what was read: merges equal points, drops degenerate and duplicate triangles,

@@ -1,0 +1,359 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.h"
+#include "volume/mesh_checks.h"
+#include "volume/mesh_input.h"
+
+namespace isowave {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::ThrowsMessage;
+namespace fs = std::filesystem;
+
+const fs::path kData = ISOWAVE_TEST_DATA;
+
+fs::path written(const std::string& name, const std::string& bytes) {
+    const fs::path folder = fs::temp_directory_path() / ("isowave_mesh_read_" + std::to_string(::getpid()));
+    fs::create_directories(folder);
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return folder / name;
+}
+
+TriangleMesh readBytes(const std::string& name, const std::string& bytes, MeshFileInfo* info = nullptr) {
+    const fs::path path = written(name, bytes);
+    struct Remove {
+        fs::path path;
+        ~Remove() { fs::remove(path); }
+    } remove{path};
+    return readMesh(path, info);
+}
+
+// One line that names the file and holds these words.
+auto refuses(const std::string& words) {
+    return ThrowsMessage<InputError>(AllOf(HasSubstr(words), Not(HasSubstr("\n"))));
+}
+#define EXPECT_REFUSED(name, bytes, words) EXPECT_THAT([&] { readBytes(name, bytes); }, refuses(words))
+
+template <class T>
+void append(std::string& bytes, T value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string binaryStl(const TriangleMesh& mesh, std::string header = "binary") {
+    header.resize(80);
+    append(header, static_cast<std::uint32_t>(mesh.triangles.size()));
+    for (const Triangle& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) append(header, 0.0f);
+        for (const auto corner : t) {
+            for (const double x : mesh.points[corner]) append(header, static_cast<float>(x));
+        }
+        append(header, std::uint16_t(0));
+    }
+    return header;
+}
+
+std::string binaryPly(const TriangleMesh& mesh, bool bigEndian = false) {
+    std::string bytes =
+        std::string("ply\nformat ") + (bigEndian ? "binary_big_endian" : "binary_little_endian") +
+        " 1.0\ncomment SPACE=LPS\nelement vertex " + std::to_string(mesh.points.size()) +
+        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+        std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto put = [&](auto value) {
+        std::string part;
+        append(part, value);
+        if (bigEndian) std::reverse(part.begin(), part.end());
+        bytes += part;
+    };
+    for (const Point& p : mesh.points) {
+        for (const double x : p) put(static_cast<float>(x));
+    }
+    for (const Triangle& t : mesh.triangles) {
+        put(std::uint8_t(3));
+        for (const auto corner : t) put(static_cast<std::int32_t>(corner));
+    }
+    return bytes;
+}
+
+const TriangleMesh kBall = shapes::sphere(10, 1, {1, 2, 3});
+
+const std::string kTetrahedronObj =
+    "# SPACE=RAS\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+const std::string kTetrahedronOff =
+    "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+const std::string kTetrahedronPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+void expectTetrahedron(const TriangleMesh& mesh) {
+    EXPECT_EQ(mesh.points.size(), 4u);
+    ASSERT_EQ(mesh.triangles.size(), 4u);
+    EXPECT_TRUE(checks::isClosedAndOriented(mesh));
+    EXPECT_NEAR(checks::volumeOf(mesh), 1.0 / 6, 1e-12);
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    const auto at = text.find(what);
+    EXPECT_NE(at, text.npos) << what;
+    return text.replace(at, what.size(), with);
+}
+
+TEST(ReadMesh, ReadsEveryFormat) {
+    MeshFileInfo info;
+    const double volume = checks::volumeOf(kBall);
+    for (const bool bigEndian : {false, true}) {
+        const TriangleMesh ply = readBytes("a.ply", binaryPly(kBall, bigEndian), &info);
+        EXPECT_EQ(info.format, "binary PLY");
+        EXPECT_EQ(info.space, "LPS");
+        EXPECT_EQ(ply.points.size(), kBall.points.size());
+        EXPECT_NEAR(checks::volumeOf(ply), volume, 1e-4 * volume);
+    }
+    const TriangleMesh stl = readBytes("a.STL", binaryStl(kBall, "3D Slicer output. SPACE=RAS"), &info);
+    EXPECT_EQ(info.format, "binary STL");
+    EXPECT_EQ(info.space, "RAS");
+    EXPECT_EQ(info.polygons, 80);
+    EXPECT_EQ(stl.points.size(), kBall.points.size());  // merged by position
+    EXPECT_NEAR(checks::volumeOf(stl), volume, 1e-4 * volume);
+    expectTetrahedron(readBytes("a.obj", kTetrahedronObj, &info));
+    EXPECT_EQ(info.format, "OBJ");
+    EXPECT_EQ(info.space, "RAS");
+    expectTetrahedron(readBytes("a.off", kTetrahedronOff, &info));
+    EXPECT_EQ(info.format, "OFF");
+    EXPECT_EQ(info.space, "");
+    expectTetrahedron(readBytes("a.ply", kTetrahedronPly, &info));
+    EXPECT_EQ(info.format, "ASCII PLY");
+}
+
+TEST(ReadMesh, ReadsRealFiles) {
+    struct Expected {
+        const char* name;
+        std::size_t points, triangles;
+        std::int64_t polygons;
+    };
+    for (const auto& [name, points, triangles, polygons] :
+         {Expected{"pinion.off", 650, 1300, 1300}, Expected{"bones.off", 2154, 4204, 4204},
+          Expected{"gearwheel.bin.stl", 1222, 2444, 2444},
+          Expected{"catmark_toroidal_tet.obj", 20, 48, 24}}) {
+        MeshFileInfo info;
+        const TriangleMesh mesh = readMesh(kData / "meshes" / name, &info);
+        EXPECT_EQ(mesh.points.size(), points) << name;
+        EXPECT_EQ(mesh.triangles.size(), triangles) << name;
+        EXPECT_EQ(info.polygons, polygons) << name;
+        EXPECT_TRUE(checks::isClosedAndOriented(mesh)) << name;
+        EXPECT_GT(checks::volumeOf(mesh), 0) << name;
+    }
+}
+
+// The fourteen malformed files: what becomes of each. Empty words: it reads and is closed.
+TEST(ReadMesh, KnowsWhatIsWrongWithBrokenStlFiles) {
+    struct Expected {
+        const char *name, *words;
+    };
+    int files = 0;
+    for (const auto& [name, words] : {
+             Expected{"empty.stl", "the file is empty"},
+             Expected{"fourVertices.ascii.stl", "line 2: the facet has 4 vertices"},
+             Expected{"incorrectFaceCounter.bin.stl",
+                      "promises 66 triangles (3384 bytes) but the file holds 4"},
+             Expected{"missingEndsolid.ascii.stl", "ends after 4 facets without 'endsolid'"},
+             Expected{"missingFace.ascii.stl", "not closed: 3 boundary edges in 1 loop"},
+             Expected{"missingNormal.ascii.stl", ""},
+             Expected{"notANumberNormal.ascii.stl", ""},
+             Expected{"quad.ascii.stl", "line 2: the facet has 4 vertices"},
+             Expected{"singleFace.ascii.stl", "not closed: 3 boundary edges in 1 loop"},
+             Expected{"solidNameMismatch.ascii.stl", ""},
+             Expected{"twoVertices.ascii.stl", "line 2: the facet has 2 vertices"},
+             Expected{"wrongHeader.bin.stl", ""},  // binary, though it starts with "solid"
+             Expected{"wrongNormal.ascii.stl", ""},
+             Expected{"wrongNormals.ascii.stl", ""},
+         }) {
+        const fs::path path = kData / "broken_stl" / name;
+        const auto read = [&, file = path] { return repairMesh(readMesh(file), file.string()); };
+        if (*words) {
+            EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(
+                                             AllOf(HasSubstr(words), HasSubstr(name), Not(HasSubstr("\n")))));
+        } else {
+            const TriangleMesh mesh = read();
+            EXPECT_TRUE(checks::isClosedAndOriented(mesh)) << name;
+            EXPECT_GE(mesh.triangles.size(), 4u) << name;
+        }
+        ++files;
+    }
+    const auto isStl = [](const fs::directory_entry& entry) { return entry.path().extension() == ".stl"; };
+    EXPECT_EQ(files, std::count_if(fs::directory_iterator(kData / "broken_stl"), {}, isStl));
+}
+
+TEST(ReadMesh, RefusesEveryTruncation) {
+    const std::string stl = binaryStl(kBall), ply = binaryPly(kBall);
+    for (const auto& [name, bytes] :
+         {std::pair{"a.stl", stl}, {"a.ply", ply}, {"b.ply", binaryPly(kBall, true)}}) {
+        EXPECT_NO_THROW(readBytes(name, bytes));
+        for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 50) {
+            EXPECT_THROW(readBytes(name, bytes.substr(0, size)), InputError) << name << " " << size;
+        }
+    }
+    // Text that ends in the middle of the last number is whole to any reader; before that, nothing is.
+    for (const auto& [name, bytes] :
+         {std::pair{"a.obj", kTetrahedronObj.substr(0, kTetrahedronObj.find('f'))},
+          {"a.off", kTetrahedronOff},
+          {"a.ply", kTetrahedronPly}}) {
+        for (std::size_t size = 0; size + 2 < bytes.size(); ++size) {
+            EXPECT_THROW(readBytes(name, bytes.substr(0, size)), InputError) << name << " " << size;
+        }
+    }
+    EXPECT_REFUSED("a.stl", stl.substr(0, 1000),
+                   "promises 80 triangles (4084 bytes) but the file holds 18 (1000");
+    EXPECT_REFUSED("a.ply", ply.substr(0, 400),
+                   "promises 42 of element 'vertex' but the file ends in number");
+    EXPECT_REFUSED("a.ply", ply.substr(0, 1000), "of element 'face' but the file ends in number");
+    EXPECT_REFUSED("a.off", kTetrahedronOff.substr(0, kTetrahedronOff.find("0 1 0")),
+                   "promises 4 points but the file ends after 2");
+}
+
+TEST(ReadMesh, RefusesWhatIsNoMesh) {
+    EXPECT_THAT([] { readMesh("no/such/file.stl"); }, refuses("no/such/file.stl: no such file"));
+    EXPECT_THAT([] { readMesh(fs::temp_directory_path() / "x.txt"); }, refuses("'.txt' is no mesh format"));
+    const fs::path folder = fs::temp_directory_path() / "isowave_folder.stl";
+    fs::create_directories(folder);
+    EXPECT_THAT([&] { readMesh(folder); }, refuses("is a folder"));
+    EXPECT_REFUSED("a.obj", "", "the file is empty");
+    EXPECT_REFUSED("a.stl", "\x1f\x8b\x08 zipped", "gunzip it first");
+    EXPECT_REFUSED("a.stl", "hello", "too few for an STL");
+    EXPECT_REFUSED("a.stl", "solid nothing\nendsolid\n", "no triangles");
+    EXPECT_REFUSED("a.stl", binaryStl({}), "no triangles");
+    EXPECT_REFUSED("a.ply", "plyx\n", "no PLY");
+    EXPECT_REFUSED("a.off", "4 4 0\n0 0 0\n", "starts with 'OFF'");
+    EXPECT_REFUSED("a.off", "OFF BINARY\n4 4 0\n", "binary OFF");
+    EXPECT_REFUSED("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "3 points but no faces");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "element face 4", "element face 0"), "point cloud");
+}
+
+TEST(ReadMesh, SaysWhichPointIsMissing) {
+    EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "f 2 3 4", "f 2 3 5"),
+                   "line 9: a face refers to point 5, but the file has only 4 points");
+    EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f 0 3 2"),
+                   "line 6: a face refers to point 0");
+    EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f 1 -5 2"),
+                   "line 6: a face refers to point -5");
+    EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f 1 3"),
+                   "line 6: a face needs three corners");
+    EXPECT_REFUSED("a.off", replaced(kTetrahedronOff, "3 0 2 1", "3 0 4 1"),
+                   "line 7: a face refers to point '4'; there are points 0 to 3");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "3 0 2 1", "3 0 4 1"),
+                   "face 1 refers to a point that is missing; the file has 4 points");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "3 0 2 1", "2 0 2"), "face 1 has 2 corners");
+}
+
+TEST(ReadMesh, SaysWhichCoordinateIsNotFinite) {
+    for (const char* bad : {"nan", "inf", "-inf"}) {
+        EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "v 0 1 0", std::string("v 0 ") + bad + " 0"),
+                       "line 4: coordinate " + std::string(bad) + " is not finite");
+        EXPECT_REFUSED("a.off", replaced(kTetrahedronOff, "0 1 0", std::string("0 ") + bad + " 0"), "line 5");
+        EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "0 1 0", std::string("0 ") + bad + " 0"),
+                       "line 12");
+    }
+    EXPECT_REFUSED(
+        "a.stl",
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 nan 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid\n",
+        "line 5: coordinate nan is not finite");
+    TriangleMesh mesh = kBall;
+    mesh.points[7][1] = NAN;
+    EXPECT_REFUSED("a.ply", binaryPly(mesh), "point 8: y = nan is not finite");
+    EXPECT_REFUSED("a.stl", binaryStl(mesh), "coordinate nan is not finite");
+    mesh.points[7][1] = HUGE_VAL;
+    EXPECT_REFUSED("a.ply", binaryPly(mesh), "point 8: y = inf is not finite");
+    EXPECT_REFUSED("a.stl", binaryStl(mesh), "coordinate inf is not finite");
+}
+
+TEST(ReadMesh, RefusesCoordinatesBeyondReason) {
+    TriangleMesh mesh = kBall;
+    mesh.points[7][2] = 3e30;
+    EXPECT_REFUSED("a.stl", binaryStl(mesh), "beyond 1e15");
+    EXPECT_REFUSED("a.ply", binaryPly(mesh), "beyond 1e15");
+    // 20 across at 1e6: float32 has steps of 1/16 there, 320 of them; at 1e5, 2560.
+    EXPECT_REFUSED("a.stl", binaryStl(shapes::sphere(10, 2, {1e6, 0, 0})), "fewer than 1024 steps are left");
+    EXPECT_NO_THROW(readBytes("a.stl", binaryStl(shapes::sphere(10, 2, {1e5, 0, 0}))));
+    const std::string far = replaced(kTetrahedronObj, "v 0 0 0", "v 1e9 0 0");
+    EXPECT_NO_THROW(readBytes("a.obj", far));  // decimal: float64
+}
+
+TEST(ReadMesh, UnderstandsWhatExportersWrite) {
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f 1/1/1 3//2 2/5")));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f\t1\t3\t2")));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "f 1 \\\n3 2")));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "f 1 3 2", "l 1 2\nf -4 -2 -3\n")));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "v 0 0 0",
+                                                  "mtllib a.mtl\no x\nvn 0 0 1\nv 0 0 0 "
+                                                  "0.5 0.5 0.5")));
+    std::string windows;
+    for (const char c : kTetrahedronObj) windows += c == '\n' ? "\r\n" : std::string(1, c);
+    expectTetrahedron(readBytes("a.obj", windows));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "OFF\n", "OFF # made by hand\n\n")));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "3 0 2 1", "3 0 2 1 255 0 0")));
+    std::ifstream file(kData / "broken_stl" / "wrongNormal.ascii.stl");
+    std::string text(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(readBytes("a.stl", text).triangles.size(), 4u);
+    EXPECT_EQ(readBytes("a.stl", replaced(text, "solid tetrahedron", "solid a facet of an endsolid"))
+                  .triangles.size(),
+              4u);
+    EXPECT_EQ(readBytes("a.stl", text + text).triangles.size(), 8u);  // two solids
+    for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    EXPECT_EQ(readBytes("a.stl", text).triangles.size(), 4u);
+}
+
+TEST(ReadMesh, CutsPolygonsIntoFans) {
+    MeshFileInfo info;
+    const TriangleMesh mesh =
+        readBytes("a.obj", "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n", &info);
+    EXPECT_EQ(info.polygons, 1);
+    EXPECT_THAT(mesh.triangles,
+                ::testing::ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}));
+}
+
+TEST(ReadMesh, IsSilentAndSurvivesDamage) {
+    // Any byte may be anything: it reads or throws InputError, and CGAL prints nothing.
+    ::testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStdout();
+    for (const auto& [name, bytes] : {std::pair{"a.stl", binaryStl(kBall)},
+                                      {"a.ply", binaryPly(kBall)},
+                                      {"a.obj", kTetrahedronObj},
+                                      {"a.off", kTetrahedronOff},
+                                      {"b.ply", kTetrahedronPly}}) {
+        std::mt19937 random(7);
+        for (int trial = 0; trial < 300; ++trial) {
+            std::string damaged = bytes;
+            for (int i = 0; i < 1 + trial % 3; ++i) {
+                damaged[random() % std::min<std::size_t>(damaged.size(), 600)] =
+                    static_cast<char>(random() % 256);
+            }
+            try {
+                const TriangleMesh mesh = readBytes(name, damaged);
+                for (const Triangle& t : mesh.triangles) {
+                    for (const auto corner : t) ASSERT_LT(corner, mesh.points.size());
+                }
+            } catch (const InputError& error) {
+                EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+            }
+        }
+    }
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(IsMeshPath, GoesByTheExtension) {
+    for (const char* name : {"a.stl", "b.STL", "c.Obj", "d.ply", "e.off"})
+        EXPECT_TRUE(isMeshPath(name)) << name;
+    for (const char* name : {"a.nrrd", "stl", "a.stl.gz", ""}) EXPECT_FALSE(isMeshPath(name)) << name;
+}
+
+}  // namespace
+}  // namespace isowave
