@@ -16,13 +16,18 @@ namespace isowave {
 // voxels (index space), negative inside, exact sign at every lattice point, clamped to ±halfWidth; active
 // where |value| < halfWidth; inactive voxels and tiles ±halfWidth by sign; background +halfWidth.
 
-// mesh: closed (repairMesh). transform: index -> world, uniform scale. Distances by
-// openvdb::tools::meshToVolume; the sign of a lattice point is its winding number with respect to the mesh
-// (nested voids are outside, parts that overlap are one solid), found on fixed-point coordinates (2^-20
-// voxel) with exact integer arithmetic, so that a ray never slips between two triangles. A lattice point on
-// the surface gets 2^-20 of either sign, never 0. evenOdd: count crossings instead of winding, for meshes
-// whose orientation cannot be trusted (MeshRepairReport::evenOdd). Throws InputError: mesh not closed, or
-// more than 2^20 voxels across.
+// mesh: closed (repairMesh). transform: index -> world, uniform scale. halfWidth >= 1, in voxels.
+// Distances are exact, to float32's rounding: every lattice point of the band asks a hierarchy of boxes for
+// its nearest triangle. Signs are winding numbers with respect to the mesh (nested voids are outside, parts
+// that overlap are one solid), by LatticeLines of volume/mesh_winding.h, which no ray slips through. A
+// lattice point on the surface gets 2^-20 of either sign, never 0. evenOdd: count crossings instead of
+// winding, for meshes whose orientation cannot be trusted (MeshRepairReport::evenOdd). Throws InputError:
+// mesh not closed, or more than 2^20 voxels across.
+//
+// Left: openvdb::tools::meshToVolume. It hands the nearest triangle on from neighbour to neighbour, which
+// goes wrong by up to 1.09 voxels for 2 % of the points between 1.5 and 4 voxels from a sphere's mesh, and
+// its signs fill nested voids; it is no faster (heatsink, 545,936 triangles, 256 voxels, 2 cores: 0.9 s, here
+// 0.4 s).
 openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
                                          double halfWidth, bool evenOdd = false,
                                          const Progress& progress = {});
@@ -38,8 +43,8 @@ double voxelForCount(const TriangleMesh& mesh, double voxels);
 openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double voxel);
 
 // How many lattice points distanceFromMesh will hold active, before it is run: area / voxel^2 * 2 halfWidth,
-// but no more than the bounding box, widened by halfWidth, has. About 1.3 times too much on thin walls, whose
-// bands overlap. A point of the band takes about 5 bytes in a grid, and 20 while it is made.
+// but no more than the bounding box, widened by halfWidth, has. Measured: 1.0 (sphere) to 1.4 (thin fins,
+// whose bands overlap) times the truth. Each takes 8 to 11 bytes of the grid returned.
 double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWidth);
 
 // With an open border the border's voxels continue this many voxels outwards before the cap; a mesh is then

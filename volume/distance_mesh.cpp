@@ -1,11 +1,22 @@
+#include <openvdb/tools/Prune.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 
 #include "volume/distance.h"
+#include "volume/mesh_nearest.h"
+#include "volume/mesh_winding.h"
+#include "volume/sign_tiles.h"
 
 namespace isowave {
 namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
 
 struct Bounds {
     Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -36,7 +47,128 @@ double areaOf(const TriangleMesh& mesh) {
     return twice / 2;
 }
 
+// Cubes of lattice points, 2^n to an edge.
+struct Blocks {
+    std::vector<openvdb::Coord> origins;
+    std::int32_t size;
+};
+
+// Keeps the blocks with a lattice point that may lie nearer than halfWidth to the mesh: those whose centre is
+// nearer than halfWidth plus the distance from there to a corner.
+void keepNear(Blocks& blocks, const TriangleHierarchy& triangles, double halfWidth,
+              const Progress& progress) {
+    const double toCentre = (blocks.size - 1) / 2.0;
+    const double reach = halfWidth + std::sqrt(3.0) * toCentre;
+    std::vector<char> isNear(blocks.origins.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, isNear.size(), 64), [&](const auto& range) {
+        progress.check();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const openvdb::Vec3d centre = blocks.origins[i].asVec3d() + openvdb::Vec3d(toCentre);
+            isNear[i] = triangles.nearest(centre, {reach * reach, -1}).triangle >= 0;
+        }
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < isNear.size(); ++i) {
+        if (isNear[i]) blocks.origins[kept++] = blocks.origins[i];
+    }
+    blocks.origins.resize(kept);
+}
+
+// The leaves that may hold a lattice point nearer than halfWidth, found from large blocks to small ones: all
+// others are never looked at.
+Blocks leavesNear(const TriangleHierarchy& triangles, const openvdb::CoordBBox& meshBox, double halfWidth,
+                  const Progress& progress) {
+    openvdb::CoordBBox box = meshBox;
+    box.expand(static_cast<std::int32_t>(std::ceil(halfWidth)));
+    Blocks blocks{{}, 256};
+    const openvdb::Coord first = box.min() & ~(blocks.size - 1);
+    for (std::int32_t x = first.x(); x <= box.max().x(); x += blocks.size) {
+        for (std::int32_t y = first.y(); y <= box.max().y(); y += blocks.size) {
+            for (std::int32_t z = first.z(); z <= box.max().z(); z += blocks.size) {
+                blocks.origins.emplace_back(x, y, z);
+            }
+        }
+    }
+    keepNear(blocks, triangles, halfWidth, progress);
+    while (blocks.size > std::int32_t(Leaf::DIM)) {
+        Blocks halves{{}, blocks.size / 2};
+        halves.origins.reserve(8 * blocks.origins.size());
+        for (const openvdb::Coord& origin : blocks.origins) {
+            for (int i = 0; i < 8; ++i) {
+                halves.origins.push_back(origin.offsetBy(i & 1 ? halves.size : 0, i & 2 ? halves.size : 0,
+                                                         i & 4 ? halves.size : 0));
+            }
+        }
+        blocks = std::move(halves);
+        keepNear(blocks, triangles, halfWidth, progress);
+    }
+    return blocks;
+}
+
+// Fills a leaf with signed distances. Voxels go one by one along z, each a neighbour of one before it, whose
+// nearest triangle bounds the distance; so most queries only confirm it.
+void fillLeaf(Leaf& leaf, const TriangleHierarchy& triangles, const LatticeLines& lines, float halfWidth) {
+    static_assert(Leaf::DIM == 8, "inside8 covers a row of a leaf");
+    constexpr double least = 1.0 / (1 << 20);
+    std::array<unsigned, 64> inside;
+    for (int row = 0; row < 64; ++row)
+        inside[row] = lines.inside8(leaf.origin().offsetBy(0, row >> 3, row & 7));
+
+    std::array<std::int64_t, 512> nearest;
+    float* values = leaf.buffer().data();
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+        const openvdb::Vec3d point = leaf.offsetToGlobalCoord(n).asVec3d();
+        const openvdb::Index before = n & 7 ? n - 1 : n & 63 ? n - 8 : n - 64;  // along z, else y, else x
+        TriangleHierarchy::Nearest best{double(halfWidth) * halfWidth, -1};
+        if (n > 0 && nearest[before] >= 0) {
+            const auto guess = triangles.distanceTo(nearest[before], point);
+            if (guess.squared < best.squared) best = guess;
+        }
+        best = triangles.nearest(point, best);
+        nearest[n] = best.triangle;
+        const float magnitude = static_cast<float>(std::max(std::sqrt(best.squared), least));
+        const bool active = magnitude < halfWidth;
+        const bool isInside = inside[n & 63] >> (n >> 6) & 1;
+        values[n] = (isInside ? -1.0f : 1.0f) * (active ? magnitude : halfWidth);
+        leaf.setActiveState(n, active);
+    }
+}
+
 }  // namespace
+
+openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
+                                         double halfWidth, bool evenOdd, const Progress& progress) {
+    assert(halfWidth >= 1.0);
+    progress("finding the inside", 0.0);
+    std::vector<openvdb::Vec3d> points;
+    points.reserve(mesh.points.size());
+    for (const Point& p : mesh.points) points.push_back(transform.worldToIndex(openvdb::Vec3d(p.data())));
+    const LatticeLines lines(points, mesh.triangles, evenOdd, progress);
+
+    progress("measuring distances", 0.0);
+    const auto width = static_cast<float>(halfWidth);
+    auto grid = openvdb::FloatGrid::create(width);
+    if (!mesh.triangles.empty()) {
+        const TriangleHierarchy triangles(points, mesh.triangles);
+        const Blocks blocks = leavesNear(triangles, lines.box(), halfWidth, progress);
+        std::vector<Leaf*> leaves;
+        leaves.reserve(blocks.origins.size());
+        for (const openvdb::Coord& origin : blocks.origins) leaves.push_back(grid->tree().touchLeaf(origin));
+        std::atomic<std::size_t> done = 0;
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                fillLeaf(*leaves[i], triangles, lines, width);
+            const std::size_t now = done += range.size();
+            progress("measuring distances", double(now) / double(leaves.size()));
+        });
+    }
+    signTiles(grid->tree(), lines.box(), width, [&](const openvdb::Coord& p) { return lines.inside(p); });
+    openvdb::tools::prune(grid->tree());
+    grid->setTransform(transform.copy());
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setName("distance");
+    return grid;
+}
 
 double voxelForCount(const TriangleMesh& mesh, double voxels) {
     assert(voxels > 0 && !mesh.triangles.empty());
