@@ -48,7 +48,7 @@ openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double 
 double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWidth);
 
 // With an open border the border's voxels continue this many voxels outwards before the cap; a mesh is then
-// cut off at the border itself (dropOutside() in polygonize/).
+// cut off at the border itself (clipToBox() in polygonize/clip.h).
 inline constexpr int kOpenBorder = 16;
 
 struct ImageSolid {
