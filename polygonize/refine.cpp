@@ -1,0 +1,172 @@
+// refineField: knot insertion on a sparse field. A block of 8^3 control points becomes 2^3 fine blocks.
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+#include "polygonize/blocks.h"
+#include "polygonize/polygonize.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Coord;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+using ShapeLeaf = openvdb::BoolTree::LeafNodeType;
+
+constexpr int kFine = 2 * kBlock;
+constexpr int kCoarse = kBlock + 2;  // coarse -1 .. 8 decide fine 0 .. 15
+
+constexpr int fineIndex(int x, int y, int z) { return (x * kFine + y) * kFine + z; }
+
+// One axis: fine 0 .. 15 from coarse -1 .. 8; the strides are those of the axis.
+void insertKnots(const double* coarse, int coarseStride, double* fine, int fineStride) {
+    for (int i = 0; i < kBlock; ++i) {
+        const double* c = coarse + (i + 1) * coarseStride;
+        fine[2 * i * fineStride] = (c[-coarseStride] + 6 * c[0] + c[coarseStride]) / 8;
+        fine[(2 * i + 1) * fineStride] = (c[0] + c[coarseStride]) / 2;
+    }
+}
+
+using CoarseValues = std::array<double, kCoarse * kCoarse * kCoarse>;
+using FineValues = std::array<double, kFine * kFine * kFine>;
+
+void insertKnots(const CoarseValues& coarse, FineValues& fine) {
+    std::array<double, kCoarse * kCoarse * kFine> z;
+    for (int xy = 0; xy < kCoarse * kCoarse; ++xy) insertKnots(&coarse[xy * kCoarse], 1, &z[xy * kFine], 1);
+    std::array<double, kCoarse * kFine * kFine> yz;
+    for (int x = 0; x < kCoarse; ++x)
+        for (int k = 0; k < kFine; ++k)
+            insertKnots(&z[x * kCoarse * kFine + k], kFine, &yz[x * kFine * kFine + k], kFine);
+    for (int jk = 0; jk < kFine * kFine; ++jk) insertKnots(&yz[jk], kFine * kFine, &fine[jk], kFine * kFine);
+}
+
+// The 2^3 fine blocks of a coarse one: a leaf each, or nothing and the one inactive value of all its points.
+struct FineBlock {
+    std::unique_ptr<Leaf> leaf;
+    float tile = 0;
+};
+using FineBlocks = std::array<FineBlock, 8>;
+
+FineBlocks refineBlock(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin) {
+    PaddedBlock padded;
+    gather(accessor, origin, padded);
+    CoarseValues values, known;  // known: 1 in I. Weights are positive, so a sum > 0 has a term in I
+    for (int x = 0, n = 0; x < kCoarse; ++x)
+        for (int y = 0; y < kCoarse; ++y)
+            for (int z = 0; z < kCoarse; ++z, ++n) {
+                values[n] = padded.at(x - 1, y - 1, z - 1);
+                known[n] = accessor.isValueOn(origin.offsetBy(x - 1, y - 1, z - 1));
+            }
+    FineValues fineValues, fineKnown;
+    insertKnots(values, fineValues);
+    insertKnots(known, fineKnown);
+
+    FineBlocks blocks;
+    for (int b = 0; b < 8; ++b) {
+        const Coord corner(kBlock * (b >> 2), kBlock * (b >> 1 & 1), kBlock * (b & 1));
+        auto leaf = std::make_unique<Leaf>((origin << 1) + corner, 0.0f, false);
+        bool constant = true;
+        for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+            const Coord at = corner + Leaf::offsetToLocalCoord(n);
+            const int i = fineIndex(at.x(), at.y(), at.z());
+            const float value = static_cast<float>(fineValues[i]);
+            const bool active = fineKnown[i] > 0 || value != padded.at(at.x() / 2, at.y() / 2, at.z() / 2);
+            leaf->setValueOnly(n, value);
+            if (active) leaf->setValueOn(n);
+            constant = constant && !active && value == leaf->getValue(0);
+        }
+        blocks[b].tile = leaf->getValue(0);
+        if (!constant) blocks[b].leaf = std::move(leaf);
+    }
+    return blocks;
+}
+
+openvdb::FloatTree::Ptr refineControlPoints(const openvdb::FloatTree& coarse, const Progress& progress) {
+    auto fine = std::make_shared<openvdb::FloatTree>(coarse.background());
+    // Regions of one value first, then what lies over them.
+    auto tile = coarse.cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (*tile == coarse.background()) continue;
+        const openvdb::CoordBBox box = tile.getBoundingBox();
+        fine->sparseFill({box.min() << 1, (box.max() << 1).offsetBy(1)}, *tile, false);
+    }
+    const std::vector<Coord> origins = variedBlocks(coarse);
+    std::vector<FineBlocks> blocks(origins.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, origins.size(), 16), [&](const auto& range) {
+        progress.check();
+        const openvdb::FloatGrid::ConstUnsafeAccessor accessor(coarse);
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            blocks[i] = refineBlock(accessor, origins[i]);
+    });
+    openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(*fine);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        for (int b = 0; b < 8; ++b) {
+            const Coord corner(kBlock * (b >> 2), kBlock * (b >> 1 & 1), kBlock * (b & 1));
+            if (blocks[i][b].leaf)
+                accessor.addLeaf(blocks[i][b].leaf.release());
+            else
+                accessor.addTile(1, (origins[i] << 1) + corner, blocks[i][b].tile, false);
+        }
+    return fine;
+}
+
+// Active where the control points are; true where F < 0.
+openvdb::BoolTree::Ptr signsOf(const openvdb::FloatTree& controlPoints, const Progress& progress) {
+    auto shape = std::make_shared<openvdb::BoolTree>(controlPoints.background() < 0);
+    auto tile = controlPoints.cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if ((*tile < 0) != shape->background()) shape->sparseFill(tile.getBoundingBox(), *tile < 0, false);
+    const std::vector<Coord> origins = variedBlocks(controlPoints);
+    std::vector<std::unique_ptr<ShapeLeaf>> leaves(origins.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, origins.size(), 16), [&](const auto& range) {
+        progress.check();
+        const openvdb::FloatGrid::ConstUnsafeAccessor accessor(controlPoints);
+        PaddedBlock padded;
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            gather(accessor, origins[i], padded);
+            const BlockBits inside = insideBits(padded);
+            leaves[i] = std::make_unique<ShapeLeaf>(origins[i], false, false);
+            if (const auto* leaf = accessor.probeConstLeaf(origins[i]))
+                leaves[i]->setValueMask(leaf->valueMask());
+            for (openvdb::Index n = 0; n < ShapeLeaf::SIZE; ++n)
+                leaves[i]->setValueOnly(n, inside[n / 64] >> n % 64 & 1);
+        }
+    });
+    openvdb::tree::ValueAccessor<openvdb::BoolTree> accessor(*shape);
+    for (auto& leaf : leaves)
+        if (openvdb::Index n = 0;
+            leaf->isValueMaskOff() && (leaf->buffer() == ShapeLeaf::Buffer(leaf->getValue(n))))
+            accessor.addTile(1, leaf->origin(), leaf->getValue(n), false);
+        else
+            accessor.addLeaf(leaf.release());
+    return shape;
+}
+
+}  // namespace
+
+BSplineField refineField(const BSplineField& field, const Progress& progress) {
+    openvdb::FloatTree::ConstPtr coarse = field.controlPoints->constTreePtr();
+    if (coarse->hasActiveTiles()) {
+        auto voxels = std::make_shared<openvdb::FloatTree>(*coarse);
+        voxels->voxelizeActiveTiles();
+        coarse = voxels;
+    }
+    const auto transform = field.transform().copy();
+    transform->preScale(0.5);
+
+    BSplineField fine;
+    fine.K = field.K;
+    fine.controlPoints = openvdb::FloatGrid::create(refineControlPoints(*coarse, progress));
+    fine.shape = Shape::create(signsOf(fine.controlPoints->tree(), progress));
+    for (openvdb::GridBase::Ptr grid :
+         {openvdb::GridBase::Ptr(fine.controlPoints), openvdb::GridBase::Ptr(fine.shape)})
+        grid->setTransform(transform->copy());
+    fine.controlPoints->setName(field.controlPoints->getName());
+    fine.controlPoints->setGridClass(field.controlPoints->getGridClass());
+    if (field.shape) fine.shape->setName(field.shape->getName());
+    return fine;
+}
+
+}  // namespace isowave
