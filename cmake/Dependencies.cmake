@@ -1,6 +1,7 @@
 # Every package that the build looks for. scripts/setup installs them on Debian 12.
 
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)

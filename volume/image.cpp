@@ -1,0 +1,196 @@
+#include "volume/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <map>
+
+#include "base/error.h"
+#include "volume/image_source.h"
+
+namespace isowave {
+namespace fs = std::filesystem;
+using namespace imageio;
+
+std::array<double, 3> Image::spacing() const {
+    std::array<double, 3> result;
+    for (int a = 0; a < 3; ++a) {
+        const openvdb::Vec4d row = indexToWorld.row(a);
+        result[a] = openvdb::Vec3d(row[0], row[1], row[2]).length();
+    }
+    return result;
+}
+
+namespace {
+
+enum class Kind { none, nrrd, meta, nifti, tiff, png, dicom };
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+Kind kindByName(const fs::path& path) {
+    static const std::map<std::string, Kind> kinds = {
+        {".nrrd", Kind::nrrd}, {".nhdr", Kind::nrrd},  {".mha", Kind::meta},  {".mhd", Kind::meta},
+        {".nii", Kind::nifti}, {".tif", Kind::tiff},   {".tiff", Kind::tiff}, {".png", Kind::png},
+        {".dcm", Kind::dicom}, {".dicom", Kind::dicom}};
+    const std::string name = lower(path.filename().string());
+    if (name.ends_with(".nii.gz")) return Kind::nifti;
+    const auto found = kinds.find(lower(path.extension().string()));
+    return found == kinds.end() ? Kind::none : found->second;
+}
+
+// By the first bytes: scanners name DICOM files as they like.
+Kind kindByContent(const fs::path& path) {
+    char start[132] = {};
+    std::ifstream(path, std::ios::binary).read(start, sizeof start);
+    const std::string text(start, sizeof start);
+    if (text.compare(128, 4, "DICM") == 0) return Kind::dicom;
+    if (text.compare(0, 4, "NRRD") == 0) return Kind::nrrd;
+    if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return Kind::png;
+    if (text.compare(0, 4, std::string("II*\0", 4)) == 0 || text.compare(0, 4, std::string("MM\0*", 4)) == 0)
+        return Kind::tiff;
+    return Kind::none;
+}
+
+Kind kindOf(const fs::path& path) {
+    const Kind kind = kindByName(path);
+    return kind == Kind::none ? kindByContent(path) : kind;
+}
+
+// "slice_2" before "slice_10": runs of digits compare as numbers; ties (01, 1) by the plain text.
+bool naturalLess(const fs::path& a, const fs::path& b) {
+    const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+    const std::string s = a.filename().string(), t = b.filename().string();
+    std::size_t i = 0, j = 0;
+    while (i < s.size() && j < t.size()) {
+        if (digit(s[i]) && digit(t[j])) {
+            while (i < s.size() && s[i] == '0') ++i;
+            while (j < t.size() && t[j] == '0') ++j;
+            std::size_t m = i, n = j;
+            while (m < s.size() && digit(s[m])) ++m;
+            while (n < t.size() && digit(t[n])) ++n;
+            if (m - i != n - j) return m - i < n - j;
+            if (const int order = s.compare(i, m - i, t, j, n - j); order != 0) return order < 0;
+            i = m;
+            j = n;
+        } else if (s[i] != t[j]) {
+            return s[i] < t[j];
+        } else {
+            ++i;
+            ++j;
+        }
+    }
+    if (s.size() - i != t.size() - j) return s.size() - i < t.size() - j;
+    return a < b;
+}
+
+template <class Iterator>
+std::map<Kind, std::vector<fs::path>> filesByKind(Iterator files) {
+    std::map<Kind, std::vector<fs::path>> result;
+    for (const fs::directory_entry& entry : files) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_regular_file() || name.starts_with('.') || name == "DICOMDIR") continue;
+        result[kindOf(entry.path())].push_back(entry.path());
+    }
+    for (auto& [kind, paths] : result) std::sort(paths.begin(), paths.end(), naturalLess);
+    return result;
+}
+
+// Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
+SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
+    auto files = filesByKind(fs::directory_iterator(folder));
+    const std::size_t png = files[Kind::png].size(), tiff = files[Kind::tiff].size();
+    if (files[Kind::dicom].empty() && png == 0 && tiff == 0)
+        files = filesByKind(fs::recursive_directory_iterator(folder));
+    if (!files[Kind::dicom].empty()) return openDicomFolder(folder, files[Kind::dicom], options);
+    if (png > 0 && tiff > 0)
+        throw InputError(folder.string(),
+                         fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
+    if (png + tiff == 0) throw InputError(folder.string(), "is a folder without DICOM, TIFF or PNG slices");
+    return openSliceFiles(folder, png > 0 ? files[Kind::png] : files[Kind::tiff], options);
+}
+
+SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
+    const std::string name = path.string();
+    if (fs::file_size(path) == 0) throw InputError(name, "is empty; expected an image");
+    if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
+    if (options.raw) return openRaw(path, options);
+    const Kind kind = kindOf(path);
+    if (kind == Kind::none)
+        throw InputError(
+            name,
+            "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
+            "voxels give their size and type");
+    return kind == Kind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
+}
+
+SourcePtr open(const fs::path& path, const ImageReadOptions& options) {
+    const std::string name = path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw InputError(name, "no such file or folder");
+    const bool folder = fs::is_directory(status);
+    if (!folder && !fs::is_regular_file(status)) throw InputError(name, "is neither a file nor a folder");
+    try {
+        SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
+        settleGeometry(name, source->header, options);
+        return source;
+    } catch (const fs::filesystem_error& e) {
+        throw InputError(name, "cannot be read: " + oneLine(e.code().message()));
+    }
+}
+
+Image imageOf(const Header& header) {
+    Image image;
+    image.size = header.size;
+    for (int a = 0; a < 3; ++a) {
+        const openvdb::Vec3d step = header.axis[a] * header.spacing[a];
+        image.indexToWorld.setRow(a, openvdb::Vec4d(step[0], step[1], step[2], 0));
+    }
+    image.indexToWorld.setRow(3, openvdb::Vec4d(header.origin[0], header.origin[1], header.origin[2], 1));
+    const ValueType stored = header.storedType.value_or(header.type);
+    image.componentType = nameOf(stored);
+    image.integral = header.integral.value_or(isIntegral(stored));
+    image.format = header.format;
+    image.warnings = header.warnings;
+    return image;
+}
+
+}  // namespace
+
+Image readImageHeader(const fs::path& path, const ImageReadOptions& options) {
+    return imageOf(open(path, options)->header);
+}
+
+Image readImage(const fs::path& path, const ImageReadOptions& options, const Progress& progress) {
+    const SourcePtr source = open(path, options);
+    checkMemory(path.string(), *source, options);
+    Image image = imageOf(source->header);
+    image.values.resize(static_cast<std::size_t>(image.voxelCount()));
+
+    std::int64_t inexact = 0;
+    for (std::int64_t z = 0, end; z < image.size[2]; z = end) {
+        progress("reading", static_cast<double>(z) / static_cast<double>(image.size[2]));
+        end = std::min(z + source->slicesPerRead, image.size[2]);
+        inexact += source->read(z, end, image.values.data() + z * source->header.sliceVoxels());
+    }
+    checkFinite(path.string(), image);
+    if (inexact > 0)
+        image.warnings.push_back(fmt::format("{} of {} {} voxels are too large for float32 and were rounded",
+                                             inexact, image.voxelCount(), image.componentType));
+    progress("reading", 1);
+    return image;
+}
+
+bool isImagePath(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) return true;
+    if (kindByName(path) != Kind::none) return true;
+    return fs::is_regular_file(path, error) && kindByContent(path) != Kind::none;
+}
+
+}  // namespace isowave

@@ -1,0 +1,292 @@
+// Files that ITK's readers know: NRRD, MetaImage, NIfTI, TIFF, PNG. One reader is made by name; ITK's
+// factories, which are global and load plugins, stay out of it.
+#include <fmt/format.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <itkPNGImageIO.h>
+#include <itkTIFFImageIO.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "volume/image_source.h"
+
+namespace isowave::imageio {
+namespace fs = std::filesystem;
+namespace {
+
+// ~64 MB of the file at a time, where a format can be read in slabs.
+constexpr std::int64_t kSlabBytes = std::int64_t(64) << 20;
+
+// "itk::ERROR: NrrdImageIO(0x55..): Read: ..." without the class, whose address differs from run to run.
+std::string whatItkSaid(const itk::ExceptionObject& e) {
+    std::string text = oneLine(e.GetDescription());
+    if (const auto at = text.find("): "); text.starts_with("itk::ERROR") && at != std::string::npos)
+        text = text.substr(at + 3);
+    return text;
+}
+
+// Runs f; whatever ITK or what lies below it throws becomes one InputError line.
+template <class F>
+void reading(const fs::path& path, F&& f) {
+    try {
+        f();
+    } catch (const InputError&) {
+        throw;
+    } catch (const itk::ExceptionObject& e) {
+        throw InputError(path.string(), "cannot be read; it is truncated or damaged: " + whatItkSaid(e));
+    } catch (const std::exception& e) {
+        throw InputError(path.string(), "cannot be read: " + oneLine(e.what()));
+    }
+}
+
+ValueType typeOf(const fs::path& path, const itk::ImageIOBase& io) {
+    using T = itk::IOComponentEnum;
+    switch (io.GetComponentType()) {
+        case T::CHAR:
+            return ValueType::int8;
+        case T::UCHAR:
+            return ValueType::uint8;
+        case T::SHORT:
+            return ValueType::int16;
+        case T::USHORT:
+            return ValueType::uint16;
+        case T::INT:
+            return ValueType::int32;
+        case T::UINT:
+            return ValueType::uint32;
+        case T::LONG:
+            return sizeof(long) == 8 ? ValueType::int64 : ValueType::int32;
+        case T::ULONG:
+            return sizeof(long) == 8 ? ValueType::uint64 : ValueType::uint32;
+        case T::LONGLONG:
+            return ValueType::int64;
+        case T::ULONGLONG:
+            return ValueType::uint64;
+        case T::FLOAT:
+            return ValueType::float32;
+        case T::DOUBLE:
+            return ValueType::float64;
+        default:
+            throw InputError(path.string(),
+                             fmt::format("holds voxels of type {}; expected integers or floating-point "
+                                         "numbers",
+                                         io.GetComponentTypeAsString(io.GetComponentType())));
+    }
+}
+
+void requireScalar(const fs::path& path, const itk::ImageIOBase& io) {
+    if (io.GetNumberOfComponents() == 1 && io.GetPixelType() == itk::IOPixelEnum::SCALAR) return;
+    std::string kind = io.GetPixelTypeAsString(io.GetPixelType());
+    if (kind == "rgb" || kind == "rgba") kind = kind == "rgb" ? "RGB" : "RGBA";
+    throw InputError(path.string(),
+                     fmt::format("holds {} voxels of {} numbers; expected one number a voxel; convert it "
+                                 "to grey",
+                                 kind, io.GetNumberOfComponents()));
+}
+
+// Sets what the reader says of axis a; a 2D reader says nothing of z.
+void takeAxis(const itk::ImageIOBase& io, unsigned a, Header& header) {
+    header.size[a] = static_cast<std::int64_t>(io.GetDimensions(a));
+    header.spacing[a] = io.GetSpacing(a);
+    header.origin[static_cast<int>(a)] = io.GetOrigin(a);
+    const std::vector<double> direction = io.GetDirection(a);
+    for (unsigned i = 0; i < 3; ++i)
+        header.axis[a][static_cast<int>(i)] = i < direction.size() ? direction[i] : (i == a ? 1.0 : 0.0);
+}
+
+// invariant on return: header describes three axes; further ones had size 1.
+void takeHeader(const fs::path& path, const itk::ImageIOBase& io, Header& header) {
+    requireScalar(path, io);
+    header.type = typeOf(path, io);
+    header.size = {1, 1, 1};
+    const unsigned dimensions = io.GetNumberOfDimensions();
+    for (unsigned a = 0; a < std::min(3u, dimensions); ++a) takeAxis(io, a, header);
+    for (unsigned a = 3; a < dimensions; ++a)
+        if (io.GetDimensions(a) != 1)
+            throw InputError(path.string(),
+                             fmt::format("is a series of {} volumes; expected one; extract one of them",
+                                         io.GetDimensions(a)));
+}
+
+[[noreturn]] void throwFlat(const fs::path& path, std::int64_t x, std::int64_t y, const std::string& remedy) {
+    throw InputError(path.string(),
+                     fmt::format("is a 2D image ({} x {}); isowave lod needs a volume{}", x, y, remedy));
+}
+
+itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
+    // MetaIO, NrrdIO and libtiff warn through ITK's window; what is wrong is said once, in the exception.
+    itk::Object::SetGlobalWarningDisplay(false);
+    std::string name = path.filename().string();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    itk::ImageIOBase::Pointer io;
+    if (name.ends_with(".mha") || name.ends_with(".mhd"))
+        io = itk::MetaImageIO::New();
+    else if (name.ends_with(".nii") || name.ends_with(".nii.gz"))
+        io = itk::NiftiImageIO::New();
+    else if (name.ends_with(".tif") || name.ends_with(".tiff"))
+        io = itk::TIFFImageIO::New();
+    else if (name.ends_with(".png"))
+        io = itk::PNGImageIO::New();
+    else
+        io = itk::NrrdImageIO::New();
+    io->SetFileName(path.string());
+    return io;
+}
+
+// Reads the region of slices z0 <= z < z1, or the whole of a 2D file, as it is stored.
+void readRegion(itk::ImageIOBase& io, std::int64_t z0, std::int64_t z1, void* buffer) {
+    const unsigned dimensions = io.GetNumberOfDimensions();
+    itk::ImageIORegion region(dimensions);
+    for (unsigned a = 0; a < dimensions; ++a) {
+        region.SetIndex(a, a == 2 ? z0 : 0);
+        region.SetSize(a, a == 2 ? static_cast<itk::SizeValueType>(z1 - z0) : io.GetDimensions(a));
+    }
+    io.SetIORegion(region);
+    io.Read(buffer);
+}
+
+class FileSource : public VoxelSource {
+  public:
+    FileSource(fs::path path, itk::ImageIOBase::Pointer io) : path_(std::move(path)), io_(std::move(io)) {}
+
+    std::int64_t read(std::int64_t z0, std::int64_t z1, float* out) override {
+        std::int64_t inexact = 0;
+        reading(path_, [&] {
+            if (header.type == ValueType::float32) return readRegion(*io_, z0, z1, out);
+            const std::int64_t count = (z1 - z0) * header.sliceVoxels();
+            // zeros, should ITK leave some unread
+            std::vector<char> stored(static_cast<std::size_t>(count) * sizeOf(header.type));
+            readRegion(*io_, z0, z1, stored.data());
+            inexact = convert(header.type, stored.data(), count, false, out);
+        });
+        return inexact;
+    }
+
+  private:
+    fs::path path_;
+    itk::ImageIOBase::Pointer io_;
+};
+
+HeaderFacts factsOf(const fs::path& path, const itk::ImageIOBase& io) {
+    if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return checkNrrd(path);
+    if (dynamic_cast<const itk::MetaImageIO*>(&io)) return checkMetaImage(path);
+    if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return checkNifti(path);
+    return {};
+}
+
+std::string formatOf(const itk::ImageIOBase& io) {
+    if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return "NRRD";
+    if (dynamic_cast<const itk::MetaImageIO*>(&io)) return "MetaImage";
+    if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return "NIfTI";
+    return dynamic_cast<const itk::PNGImageIO*>(&io) ? "PNG" : "TIFF";
+}
+
+// TIFF and PNG say at most how large a pixel is; a voxel is taken to be as high as it is wide.
+void assumeHeight(Header& header) {
+    header.hasZSpacing = false;
+    header.spacing[2] = header.spacing[0];
+}
+
+}  // namespace
+
+SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) {
+    const itk::ImageIOBase::Pointer io = readerFor(path);
+    auto source = std::make_unique<FileSource>(path, io);
+    Header& header = source->header;
+    const HeaderFacts facts = factsOf(path, *io);
+    if (facts.badSpacing && !options.spacing) {
+        header.spacing = *facts.badSpacing;
+        settleGeometry(path.string(), header, options);  // throws
+    }
+    reading(path, [&] { io->ReadImageInformation(); });
+    header.format = formatOf(*io);
+    const std::size_t dimensions = facts.size.empty() ? io->GetNumberOfDimensions() : facts.size.size();
+    takeHeader(path, *io, header);
+    if (std::min<std::size_t>(dimensions, io->GetNumberOfDimensions()) < 3 && dimensions < 3)
+        throwFlat(path, header.size[0], header.size[1],
+                  header.format == "PNG" || header.format == "TIFF" ? "; give the folder of its slices" : "");
+    if (header.format == "TIFF") assumeHeight(header);
+    header.storedType = facts.storedType;
+    header.integral = facts.integral;
+    source->slicesPerRead = header.size[2];
+    if (!facts.onePiece && io->CanStreamRead())
+        source->slicesPerRead = std::clamp<std::int64_t>(
+            kSlabBytes / (header.sliceVoxels() * static_cast<std::int64_t>(sizeOf(header.type))), 1,
+            header.size[2]);
+    return source;
+}
+
+// ---------------------------------------------------------------------------------------------- a folder of
+// slices
+
+namespace {
+
+class SlicesSource : public VoxelSource {
+  public:
+    explicit SlicesSource(std::vector<fs::path> slices) : slices_(std::move(slices)) {}
+
+    std::int64_t read(std::int64_t z0, std::int64_t z1, float* out) override {
+        std::int64_t inexact = 0;
+        for (std::int64_t z = z0; z < z1; ++z, out += header.sliceVoxels()) {
+            const fs::path& path = slices_[static_cast<std::size_t>(z)];
+            reading(path, [&] {
+                const itk::ImageIOBase::Pointer io = openSlice(path);
+                std::vector<char> stored(static_cast<std::size_t>(header.sliceVoxels()) *
+                                         sizeOf(header.type));
+                readRegion(*io, 0, 1, stored.data());
+                inexact += convert(header.type, stored.data(), header.sliceVoxels(), false, out);
+            });
+        }
+        return inexact;
+    }
+
+  private:
+    // Every slice must be what the first one is.
+    itk::ImageIOBase::Pointer openSlice(const fs::path& path) const {
+        if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
+        const itk::ImageIOBase::Pointer io = readerFor(path);
+        io->ReadImageInformation();
+        Header slice;
+        takeHeader(path, *io, slice);
+        if (slice.size[0] != header.size[0] || slice.size[1] != header.size[1] || slice.size[2] != 1)
+            throw InputError(path.string(), fmt::format("is a slice of {} but the first, {}, is {} x {} x 1",
+                                                        sizeText(slice.size), slices_[0].filename().string(),
+                                                        header.size[0], header.size[1]));
+        if (slice.type != header.type)
+            throw InputError(path.string(), fmt::format("is a slice of {} voxels but the first, {}, holds {}",
+                                                        nameOf(slice.type), slices_[0].filename().string(),
+                                                        nameOf(header.type)));
+        return io;
+    }
+
+    std::vector<fs::path> slices_;
+};
+
+}  // namespace
+
+SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& slices,
+                         const ImageReadOptions& options) {
+    const fs::path& first = slices.front();
+    if (fs::file_size(first) == 0) throw InputError(first.string(), "is empty; expected a slice");
+    auto source = std::make_unique<SlicesSource>(slices);
+    Header& header = source->header;
+    const itk::ImageIOBase::Pointer io = readerFor(first);
+    reading(first, [&] { io->ReadImageInformation(); });
+    takeHeader(first, *io, header);
+    if (header.size[2] > 1) {  // pages
+        if (slices.size() == 1) return openVolumeFile(first, options);
+        throw InputError(folder.string(),
+                         fmt::format("holds {} TIFF files of several pages; expected slices; give one "
+                                     "of the files",
+                                     slices.size()));
+    }
+    header.format = formatOf(*io) + " slices";
+    header.size[2] = static_cast<std::int64_t>(slices.size());
+    assumeHeight(header);
+    return source;
+}
+
+}  // namespace isowave::imageio
