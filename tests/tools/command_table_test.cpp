@@ -1,0 +1,97 @@
+// The table feeds everything: help, markdown, completion, parser.
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+const std::vector<std::string> kCommands{"lod",   "analyse", "mesh", "field",     "info",
+                                         "check", "compare", "help", "completion"};
+
+TEST(Help, ListsEverySubcommandAndEveryExitCode) {
+    const std::string text = succeed({"--help"}).out;
+    for (const std::string& command : kCommands)
+        EXPECT_NE(text.find("\n  " + command), std::string::npos) << command;
+    for (const char* code : {"  0  ", "  1  ", "  2  ", "  3  ", "  4  ", "130  "})
+        EXPECT_NE(text.find(code), std::string::npos) << code;
+    EXPECT_EQ(text, succeed({"help"}).out);
+    EXPECT_EQ(text, succeed({"-h"}).out);
+}
+
+TEST(Help, ListsTheDocumentedOptionsOfLod) {
+    const std::string text = succeed({"lod", "--help"}).out;
+    for (const char* option :
+         {"--iso V",         "--label L",     "--voxels N",    "--voxel LEN",  "--fit binary|distance",
+          "--half-width W",  "--band B",      "--levels A..B", "--steps A..B", "--format stl|ply|obj|off|glb",
+          "--space lps|ras", "--open-border", "--threads N",   "--json FILE",  "--quiet",
+          "--invert",        "--size",        "--type",        "--spacing",    "--endian",
+          "--max-memory"})
+        EXPECT_NE(text.find(option), std::string::npos) << option;
+    EXPECT_EQ(text, succeed({"help", "lod"}).out);
+}
+
+TEST(Help, KeepsItsLinesShort) {
+    for (const std::string& command : kCommands) {
+        std::istringstream lines(succeed({"help", command}).out);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 101u) << line;
+    }
+}
+
+TEST(Version, IsOneLine) { EXPECT_EQ(succeed({"--version"}).out.rfind("isowave ", 0), 0u); }
+
+// docs/interfaces.md holds what `isowave help --markdown` prints, between two marks.
+TEST(Markdown, IsWhatTheDocumentationHolds) {
+    const std::string document = contentOf(fs::path(ISOWAVE_SOURCE_DIR) / "docs/interfaces.md");
+    const std::string begin = "<!-- begin: isowave help --markdown -->\n", end = "<!-- end -->\n";
+    const auto from = document.find(begin);
+    ASSERT_NE(from, std::string::npos) << "the mark is missing";
+    const auto to = document.find(end, from);
+    ASSERT_NE(to, std::string::npos) << "the mark is missing";
+    EXPECT_EQ(document.substr(from + begin.size(), to - from - begin.size()),
+              succeed({"help", "--markdown"}).out)
+        << "run scripts/update-docs";
+}
+
+// ---- completion: source it in a real bash and press Tab ----
+
+std::string completed(const std::vector<std::string>& words) {
+    std::string array;
+    for (const std::string& word : words) array += "'" + word + "' ";
+    const std::string script = "source <('" ISOWAVE_BINARY "' completion bash); COMP_WORDS=(" + array +
+                               "); COMP_CWORD=" + std::to_string(words.size() - 1) +
+                               "; _isowave; echo \"${COMPREPLY[*]}\"";
+    const fs::path out = fs::temp_directory_path() / ("isowave_completion_" + std::to_string(::getpid()));
+    const fs::path file = out.string() + ".sh";
+    std::ofstream(file) << script << "\n";
+    EXPECT_EQ(::system(("bash " + file.string() + " > " + out.string()).c_str()), 0);
+    std::string text = contentOf(out);
+    fs::remove(out);
+    fs::remove(file);
+    if (!text.empty() && text.back() == '\n') text.pop_back();
+    return text;
+}
+
+TEST(Completion, OffersSubcommandsOptionsAndChoices) {
+    EXPECT_EQ(completed({"isowave", "an"}), "analyse");
+    EXPECT_EQ(completed({"isowave", "co"}), "compare completion");
+    EXPECT_EQ(completed({"isowave", "lod", "a.stl", "--vox"}), "--voxels --voxel");
+    EXPECT_EQ(completed({"isowave", "lod", "--format", "o"}), "obj off");
+    EXPECT_EQ(completed({"isowave", "lod", "--fit", ""}), "binary distance");
+    EXPECT_EQ(completed({"isowave", "check", "--vox"}), "") << "check samples nothing";
+}
+
+// ---- parser ----
+
+TEST(Parser, TakesNegativeNumbers) {
+    // Gets as far as the missing file: -300 was a number, not an option.
+    const Result result = isowave({"lod", "no.nrrd", "--iso", "-300", "-o", "x"});
+    EXPECT_EQ(result.exitCode, 3) << result.err;
+}
+
+TEST(Parser, RefusesAnOptionGivenTwice) {
+    const Result result = isowave({"lod", "no.nrrd", "--iso", "1", "--iso", "2", "-o", "x"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.errorLines(), 1);
+}
+
+}  // namespace
+}  // namespace isowave::tools_test

@@ -1,0 +1,372 @@
+// isowave lod on small inputs of every kind: files, report, defaults, determinism.
+#include <set>
+
+#include "tests/tools/inputs.h"
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+using Arguments = std::vector<std::string>;
+using Json = nlohmann::json;
+
+const double kPi = std::acos(-1.0);
+
+std::set<std::string> keysOf(const Json& object) {
+    std::set<std::string> keys;
+    for (const auto& item : object.items()) keys.insert(item.key());
+    return keys;
+}
+
+std::set<std::string> namesIn(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+    return names;
+}
+
+// A ladder made from a ball of radius 9 in a small grey image.
+class BallLadder : public ::testing::Test {
+  protected:
+    static constexpr Size kSize{32, 32, 32};
+
+    BallLadder() { writeNrrd(folder / "ball.nrrd", kSize, greyBall(kSize, 9), "spacings: 0.5 0.5 0.5\n"); }
+
+    Result ladder(Arguments more, const std::string& output = "out/ball") {
+        Arguments arguments{"lod", (folder / "ball.nrrd").string(), "--iso", "0",
+                            "-o",  (folder / output).string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments);
+    }
+    Json report(const std::string& output = "out/ball") const {
+        return jsonFile(folder / output / "report.json");
+    }
+
+    Folder folder;
+};
+
+TEST_F(BallLadder, PutsOneMeshALevelAndAReportIntoItsFolder) {
+    ladder({});
+    std::set<std::string> expected{"report.json"};
+    const Json levels = report()["levels"];
+    ASSERT_GE(levels.size(), 3u);
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        if (!levels[i]["file"].is_null()) {
+            EXPECT_EQ(levels[i]["file"], "ball_L" + std::to_string(i) + ".ply");
+            expected.insert(levels[i]["file"].get<std::string>());
+        }
+    EXPECT_EQ(namesIn(folder / "out/ball"), expected);
+    EXPECT_EQ(namesIn(folder / "out"), std::set<std::string>{"ball"});
+}
+
+TEST_F(BallLadder, ReportsTheDocumentedKeys) {
+    ladder({});
+    const Json r = report();
+    EXPECT_EQ(keysOf(r),
+              (std::set<std::string>{"version", "input", "fit", "K", "levels", "steps", "coefficients_stored",
+                                     "control_points", "seconds", "peak_memory_bytes", "threads"}));
+    EXPECT_EQ(keysOf(r["input"]),
+              (std::set<std::string>{"path", "kind", "format", "component_type", "dimensions", "spacing",
+                                     "range", "iso", "inverted", "open_border", "space"}));
+    EXPECT_EQ(keysOf(r["fit"]), (std::set<std::string>{"method", "half_width", "band", "lattice_points",
+                                                       "disagreeing", "repair_passes", "repaired"}));
+    for (const Json& level : r["levels"])
+        EXPECT_EQ(keysOf(level),
+                  (std::set<std::string>{"step", "level", "file", "spacing", "control_points", "nodes",
+                                         "vertices", "triangles", "components", "genus", "closed", "manifold",
+                                         "volume", "area", "rms_to_level0", "max_to_level0",
+                                         "rms_from_level0", "max_from_level0", "seconds"}));
+    EXPECT_EQ(r["version"], 1);
+    EXPECT_EQ(r["input"]["kind"], "grey image");
+    EXPECT_EQ(r["input"]["dimensions"], Json({32, 32, 32}));
+    EXPECT_EQ(r["input"]["spacing"], Json({0.5, 0.5, 0.5}));
+    EXPECT_EQ(r["fit"]["method"], "distance");
+    EXPECT_EQ(r["fit"]["disagreeing"], 0);
+    EXPECT_GT(r["peak_memory_bytes"].get<double>(), 1e6);
+    EXPECT_GE(r["seconds"]["total"].get<double>(), r["seconds"]["analyse"].get<double>());
+}
+
+TEST_F(BallLadder, MeasuresTheBall) {
+    ladder({});
+    const Json levels = report()["levels"];
+    const double volume = 4.0 / 3.0 * kPi * std::pow(4.5, 3),
+                 area = 4 * kPi * 4.5 * 4.5;  // 9 voxels of 0.5 mm
+    const Json& finest = levels[0];
+    EXPECT_NEAR(finest["volume"].get<double>(), volume, 0.02 * volume);
+    EXPECT_NEAR(finest["area"].get<double>(), area, 0.02 * area);
+    EXPECT_EQ(finest["components"], 1);
+    EXPECT_EQ(finest["genus"], 0);
+    EXPECT_EQ(finest["closed"], true);
+    EXPECT_EQ(finest["manifold"], true);
+    EXPECT_EQ(finest["rms_to_level0"], 0.0);
+    EXPECT_EQ(finest["spacing"], Json({0.5, 0.5, 0.5}));
+    EXPECT_EQ(levels[1]["spacing"], Json({1.0, 1.0, 1.0}));
+    EXPECT_GT(levels[1]["rms_to_level0"].get<double>(), 0);
+    EXPECT_LT(levels[1]["rms_to_level0"].get<double>(), 0.15 * 0.5);
+    EXPECT_GE(levels[1]["max_to_level0"].get<double>(), levels[1]["rms_to_level0"].get<double>());
+    EXPECT_LT(levels[1]["triangles"].get<double>(), 0.4 * levels[0]["triangles"].get<double>());
+}
+
+TEST_F(BallLadder, WritesTheLevelsThatWereAskedFor) {
+    ladder({"--levels", "1..2"});
+    EXPECT_EQ(namesIn(folder / "out/ball"),
+              (std::set<std::string>{"ball_L1.ply", "ball_L2.ply", "report.json"}));
+    EXPECT_GT(report()["levels"][0]["rms_to_level0"].get<double>(), 0)
+        << "measured against level 0 all the same";
+    ladder({"--steps", "1..3"}, "out/s");
+    EXPECT_EQ(namesIn(folder / "out/s"),
+              (std::set<std::string>{"s_s1.ply", "s_s2.ply", "s_s3.ply", "report.json"}));
+    EXPECT_EQ(report("out/s")["levels"][0]["level"], nullptr);
+    EXPECT_EQ(report("out/s")["levels"][2]["level"], 1);
+    EXPECT_EQ(contentOf(folder / "out/s/s_s3.ply"), contentOf(folder / "out/ball/ball_L1.ply"));
+    ladder({"--levels", "1"}, "out/one");
+    EXPECT_EQ(namesIn(folder / "out/one"), (std::set<std::string>{"one_L1.ply", "report.json"}));
+}
+
+TEST_F(BallLadder, WritesEveryFormat) {
+    for (const std::string format : {"stl", "ply", "obj", "off", "glb"}) {
+        ladder({"--levels", "0..1", "--format", format}, "out/" + format);
+        EXPECT_EQ(namesIn(folder / ("out/" + format)),
+                  (std::set<std::string>{format + "_L0." + format, format + "_L1." + format, "report.json"}));
+        if (format == "glb") continue;  // the one format that isowave does not read
+        const Json check =
+            succeed({"check", (folder / ("out/" + format) / (format + "_L0." + format)).string(), "--json"})
+                .json();
+        EXPECT_EQ(check["triangles"], report("out/" + format)["levels"][0]["triangles"]) << format;
+        EXPECT_NEAR(check["volume"].get<double>(),
+                    report("out/" + format)["levels"][0]["volume"].get<double>(), 1e-3);
+    }
+}
+
+TEST_F(BallLadder, WritesTheSameBytesForEveryNumberOfThreads) {
+    ladder({"--threads", "1"}, "out1/ball");
+    for (const std::string threads : {"2", "4"}) {
+        ladder({"--threads", threads}, "out" + threads + "/ball");
+        EXPECT_EQ(namesIn(folder / ("out" + threads) / "ball"), namesIn(folder / "out1/ball"));
+        for (const std::string& name : namesIn(folder / "out1/ball")) {
+            if (name == "report.json") continue;
+            EXPECT_EQ(contentOf(folder / ("out" + threads) / "ball" / name),
+                      contentOf(folder / "out1/ball" / name));
+        }
+        // The reports agree but for time, memory and the number of threads itself.
+        Json one = report("out1/ball"), other = report("out" + threads + "/ball");
+        for (Json* r : {&one, &other}) {
+            for (const char* key : {"seconds", "peak_memory_bytes", "threads"}) r->erase(key);
+            for (Json& level : (*r)["levels"]) level.erase("seconds");
+        }
+        EXPECT_EQ(one, other);
+    }
+}
+
+TEST_F(BallLadder, GivesTheReportToAFileOrToStandardOutputToo) {
+    ladder({"--json", (folder / "copy.json").string()});
+    EXPECT_EQ(contentOf(folder / "copy.json"), contentOf(folder / "out/ball/report.json"));
+    const Result piped = ladder({"--json", "-"});
+    EXPECT_EQ(piped.json(), report());
+}
+
+TEST_F(BallLadder, TalksOnStandardErrorAndIsQuietWhenAsked) {
+    const Result loud = ladder({});
+    EXPECT_NE(loud.err.find("distance fit"), std::string::npos);
+    EXPECT_NE(loud.out.find("ball_L1.ply"), std::string::npos);
+    const Result quiet = ladder({"--quiet"});
+    EXPECT_EQ(quiet.err, "");
+    EXPECT_EQ(quiet.out, loud.out);
+}
+
+TEST_F(BallLadder, TurnsInsideOutWhenInverted) {
+    ladder({"--levels", "0"});
+    ladder({"--levels", "0", "--invert"}, "out/hollow");
+    const double whole =
+        15.5 * 15.5 * 15.5;  // the image, corner voxel to corner voxel; its cap lies around it
+    const double ball = report()["levels"][0]["volume"].get<double>();
+    const double hollow = report("out/hollow")["levels"][0]["volume"].get<double>();
+    EXPECT_NEAR(ball + hollow, whole, 0.15 * whole);
+    EXPECT_EQ(report("out/hollow")["levels"][0]["components"], 2);
+}
+
+TEST_F(BallLadder, ReplacesAnEarlierLadderAndLeavesOtherFilesAlone) {
+    ladder({"--levels", "0"});
+    std::ofstream(folder / "out/ball/notes.txt") << "mine";
+    const std::string before = contentOf(folder / "out/ball/ball_L0.ply");
+    succeed({"lod", (folder / "ball.nrrd").string(), "--iso", "40", "--levels", "0", "-o",
+             (folder / "out/ball/").string()});  // with a slash at the end: the same folder
+    EXPECT_NE(contentOf(folder / "out/ball/ball_L0.ply"), before);
+    EXPECT_EQ(contentOf(folder / "out/ball/notes.txt"), "mine");
+    EXPECT_EQ(namesIn(folder / "out/ball"),
+              (std::set<std::string>{"ball_L0.ply", "notes.txt", "report.json"}));
+}
+
+TEST_F(BallLadder, EndsWhereTheSolidVanishes) {
+    writeNrrd(folder / "ball.nrrd", kSize, greyBall(kSize, 3), "spacings: 1 1 1\n");
+    ladder({});
+    const Json levels = report()["levels"];
+    for (const Json& level : levels) {
+        const bool vanished = level["triangles"] == 0;
+        EXPECT_EQ(level["file"].is_null(), vanished);
+        if (vanished) {
+            EXPECT_EQ(level, levels.back()) << "nothing comes after it";
+            EXPECT_EQ(level["rms_to_level0"], nullptr);
+        }
+    }
+}
+
+// ---- kinds of images ----
+
+TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
+    const Folder folder;
+    const Size size{36, 36, 20};
+    writeNrrd(folder / "ring.nrrd", size, ringAndBall(size, 10, 4, false));
+    const Result result = succeed({"lod", (folder / "ring.nrrd").string(), "-o", (folder / "ring").string()});
+    EXPECT_NE(result.err.find("a mask, iso 0.5"), std::string::npos) << result.err;
+    const Json report = jsonFile(folder / "ring/report.json");
+    EXPECT_EQ(report["input"]["kind"], "mask");
+    EXPECT_EQ(report["input"]["iso"], 0.5);
+    EXPECT_EQ(report["fit"]["method"], "binary");
+    EXPECT_EQ(report["levels"][0]["genus"], 1);
+}
+
+TEST(Labels, AreTakenTogetherOrOneByOne) {
+    const Folder folder;
+    const Size size{36, 36, 20};
+    writeNrrd(folder / "labels.nrrd", size, ringAndBall(size, 10, 4, true));
+    const auto components = [&](const Arguments& more) {
+        Arguments arguments{
+            "lod", (folder / "labels.nrrd").string(), "--levels", "0", "-o", (folder / "o").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        succeed(arguments);
+        return jsonFile(folder / "o/report.json");
+    };
+    const Json all = components({}), ring = components({"--label", "1"}), ball = components({"--label", "2"});
+    EXPECT_EQ(all["levels"][0]["components"], 2);
+    EXPECT_EQ(all["input"]["kind"], "labels");
+    EXPECT_EQ(ring["levels"][0]["components"], 1);
+    EXPECT_EQ(ring["levels"][0]["genus"], 1);
+    EXPECT_EQ(ball["levels"][0]["genus"], 0);
+    EXPECT_EQ(ball["input"]["label"], 2.0);
+    EXPECT_EQ(ring["fit"]["method"], "binary");
+    EXPECT_EQ(components({"--label", "1", "--fit", "distance"})["fit"]["method"], "distance");
+}
+
+TEST(Headerless, ImagesAreReadAsTheOptionsSay) {
+    const Folder folder;
+    const Size size{20, 24, 28};
+    auto values = greyBall(size, 6);
+    for (std::int16_t& v : values)  // big-endian
+        v = static_cast<std::int16_t>(static_cast<std::uint16_t>(v) << 8 |
+                                      static_cast<std::uint16_t>(v) >> 8);
+    std::ofstream out(folder / "a.bin", std::ios::binary);
+    out << "12345";
+    out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(2 * values.size()));
+    out.close();
+    succeed({"lod", (folder / "a.bin").string(), "--iso", "0", "--size", "20x24x28", "--type", "int16",
+             "--spacing", "1x1x2", "--endian", "big", "--header-bytes", "5", "--levels", "0", "-o",
+             (folder / "o").string()});
+    const Json report = jsonFile(folder / "o/report.json");
+    EXPECT_EQ(report["input"]["dimensions"], Json({20, 24, 28}));
+    EXPECT_EQ(report["input"]["spacing"], Json({1.0, 1.0, 2.0}));
+    EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), 2 * 4.0 / 3.0 * kPi * 216, 60);
+}
+
+TEST(Space, RasNegatesXAndY) {
+    const Folder folder;
+    const Size size{24, 20, 16};
+    writeNrrd(folder / "a.nrrd", size, greyBall(size, 5),
+              "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: "
+              "(100,40,-7)\n");
+    const auto bounds = [&](const std::string& space) {
+        succeed({"lod", (folder / "a.nrrd").string(), "--iso", "0", "--levels", "0", "--format", "obj",
+                 "--space", space, "-o", (folder / space).string()});
+        const std::string text = contentOf(folder / space / (space + "_L0.obj"));
+        EXPECT_NE(text.find(space == "ras" ? "SPACE=RAS" : "SPACE=LPS"), std::string::npos);
+        std::istringstream lines(text);
+        std::string line;
+        double x = 0, y = 0;
+        int count = 0;
+        while (std::getline(lines, line))
+            if (line.rfind("v ", 0) == 0) {
+                std::istringstream numbers(line.substr(2));
+                double px = 0, py = 0;
+                numbers >> px >> py;
+                x += px, y += py, ++count;
+            }
+        return std::array<double, 2>{x / count, y / count};
+    };
+    const auto lps = bounds("lps"), ras = bounds("ras");
+    EXPECT_NEAR(lps[0], 111.5, 0.05);  // the ball's centre
+    EXPECT_NEAR(lps[1], 49.5, 0.05);
+    EXPECT_NEAR(ras[0], -111.5, 0.05);
+    EXPECT_NEAR(ras[1], -49.5, 0.05);
+    // Read again, both lie where the image does.
+    const Json same = succeed({"compare", (folder / "lps/lps_L0.obj").string(),
+                               (folder / "ras/ras_L0.obj").string(), "--json"})
+                          .json();
+    EXPECT_LT(same["symmetric"]["max"].get<double>(), 1e-4);
+}
+
+// ---- meshes ----
+
+TEST(MeshLadder, KeepsTheHoleOfATorusAtLevelZero) {
+    const Folder folder;
+    writeStl(folder / "torus.stl", torus(20, 8));
+    const Result result = succeed(
+        {"lod", (folder / "torus.stl").string(), "--voxels", "48", "-o", (folder / "torus").string()});
+    const Json report = jsonFile(folder / "torus/report.json");
+    EXPECT_EQ(report["input"]["kind"], "mesh");
+    EXPECT_EQ(report["fit"]["method"], "distance");
+    EXPECT_EQ(report["fit"]["half_width"], 4.0);
+    EXPECT_EQ(report["fit"]["band"], 2.0);
+    const double volume = 2 * kPi * kPi * 20 * 64;
+    EXPECT_EQ(report["levels"][0]["genus"], 1);
+    EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), volume,
+                0.03 * volume);  // the polyhedron is smaller
+    EXPECT_EQ(contentOf(folder / "torus/torus_L0.ply").find("SPACE="), std::string::npos)
+        << "a CAD mesh has no axes";
+}
+
+TEST(MeshLadder, TakesTheVoxelSizeOrTheCountOrADefaultThatItNames) {
+    const Folder folder;
+    writeStl(folder / "torus.stl", torus(20, 8));
+    const auto spacing = [&](const Arguments& more) {
+        Arguments arguments{"lod", (folder / "torus.stl").string(), "--levels", "2",
+                            "-o",  (folder / "o").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = succeed(arguments);
+        if (more.empty()) {
+            EXPECT_NE(result.err.find("--voxels 256"), std::string::npos) << result.err;
+        }
+        return jsonFile(folder / "o/report.json")["input"]["spacing"][0].get<double>();
+    };
+    EXPECT_DOUBLE_EQ(spacing({"--voxel", "1.5"}), 1.5);
+    EXPECT_NEAR(spacing({"--voxels", "28"}), 2.0, 1e-6);
+    EXPECT_NEAR(spacing({}), 56.0 / 256, 1e-6);
+}
+
+TEST(MeshLadder, KeepsTheAxesThatAMeshNames) {
+    const Folder folder;
+    writePly(folder / "ras.ply", torus(20, 8), "SPACE=RAS");
+    succeed({"lod", (folder / "ras.ply").string(), "--voxels", "32", "--levels", "0", "-o",
+             (folder / "o").string()});
+    EXPECT_EQ(jsonFile(folder / "o/report.json")["input"]["space"], "ras");
+    EXPECT_NE(contentOf(folder / "o/o_L0.ply").find("SPACE=RAS"), std::string::npos);
+    const Json same =
+        succeed({"compare", (folder / "ras.ply").string(), (folder / "o/o_L0.ply").string(), "--json"})
+            .json();
+    EXPECT_LT(same["symmetric"]["rms"].get<double>(), 0.5);
+}
+
+TEST(MeshLadder, LiftsTheMemoryLimitWhenTold) {
+    const Folder folder;
+    writeStl(folder / "torus.stl", torus(20, 8));
+    const Arguments arguments{"lod", (folder / "torus.stl").string(), "--voxels",    "48", "--levels", "0",
+                              "-o",  (folder / "o").string(),         "--max-memory"};
+    const auto with = [&](const std::string& gigabytes) {
+        Arguments all = arguments;
+        all.push_back(gigabytes);
+        return isowave(all).exitCode;
+    };
+    EXPECT_EQ(with("0.001"), 3);
+    EXPECT_EQ(with("8"), 0);
+}
+
+}  // namespace
+}  // namespace isowave::tools_test

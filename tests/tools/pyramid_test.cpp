@@ -1,0 +1,208 @@
+// analyse, mesh, field, info: a pyramid gives back what lod shows.
+#include <openvdb/openvdb.h>
+
+#include "tests/tools/inputs.h"
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+using Json = nlohmann::json;
+
+class TorusPyramid : public ::testing::Test {
+  protected:
+    TorusPyramid() {
+        writeStl(folder / "torus.stl", torus(20, 8));
+        succeed({"analyse", (folder / "torus.stl").string(), "--voxels", "40", "-o", pyramid()});
+    }
+    std::string pyramid() const { return (folder / "torus.pyramid.vdb").string(); }
+
+    Folder folder;
+};
+
+TEST_F(TorusPyramid, GivesTheMeshesThatLodGives) {
+    succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "--steps", "0..4", "-o",
+             (folder / "direct").string()});
+    const Json direct = jsonFile(folder / "direct/report.json");
+    for (int step = 0; step <= 4; ++step) {
+        const fs::path file = folder / ("step" + std::to_string(step) + ".ply");
+        succeed({"mesh", pyramid(), "--step", std::to_string(step), "-o", file.string()});
+        const Json check = succeed({"check", file.string(), "--json"}).json();
+        const Json& level = direct["levels"][step];
+        EXPECT_EQ(check["triangles"], level["triangles"]) << step;
+        EXPECT_EQ(check["genus"], level["genus"]) << step;
+        const double volume = level["volume"].get<double>();
+        EXPECT_NEAR(check["volume"].get<double>(), volume, 1e-5 * volume) << step;
+    }
+}
+
+TEST_F(TorusPyramid, IsAnInputOfLodLikeTheSolidItself) {
+    succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "-o", (folder / "direct").string()});
+    succeed({"lod", pyramid(), "-o", (folder / "again").string()});
+    const Json direct = jsonFile(folder / "direct/report.json"),
+               again = jsonFile(folder / "again/report.json");
+    EXPECT_EQ(again["input"]["kind"], "pyramid");
+    EXPECT_EQ(again["input"]["source"]["path"], direct["input"]["path"]);
+    EXPECT_EQ(again["fit"], direct["fit"]);
+    EXPECT_EQ(again["steps"], direct["steps"]);
+    EXPECT_EQ(again["coefficients_stored"], direct["coefficients_stored"]);
+    EXPECT_EQ(again["control_points"], direct["control_points"]);
+    ASSERT_EQ(again["levels"].size(), direct["levels"].size());
+    for (std::size_t i = 0; i < direct["levels"].size(); ++i)
+        for (const char* key : {"step", "level", "spacing", "control_points", "nodes", "triangles", "genus"})
+            EXPECT_EQ(again["levels"][i][key], direct["levels"][i][key]) << i << key;
+}
+
+TEST_F(TorusPyramid, IsTheSameFileForEveryNumberOfThreads) {
+    for (const std::string threads : {"1", "2", "4"}) {
+        const fs::path file = folder / (threads + ".vdb");
+        succeed({"analyse", (folder / "torus.stl").string(), "--voxels", "40", "--threads", threads, "-o",
+                 file.string()});
+        EXPECT_EQ(contentOf(file), contentOf(pyramid())) << threads;
+    }
+}
+
+TEST_F(TorusPyramid, WritesMeshesByTheNameOfTheFile) {
+    const std::map<std::string, std::string> starts{
+        {"a.ply", "ply"}, {"a.off", "OFF"}, {"a.obj", "#"}, {"a.glb", "glTF"}, {"a.STL", ""}};
+    for (const auto& [name, start] : starts) {
+        succeed({"mesh", pyramid(), "--level", "1", "-o", (folder / name).string()});
+        EXPECT_EQ(contentOf(folder / name).substr(0, start.size()), start) << name;
+    }
+    succeed({"mesh", pyramid(), "--level", "1", "--format", "off", "-o", (folder / "plain").string()});
+    EXPECT_EQ(contentOf(folder / "plain"), contentOf(folder / "a.off"));
+    succeed({"mesh", pyramid(), "--step", "3", "-o", (folder / "b.off").string()});
+    EXPECT_EQ(contentOf(folder / "b.off"), contentOf(folder / "a.off")) << "level 1 is step 3";
+}
+
+TEST_F(TorusPyramid, GivesItsFieldAsAGridForOtherTools) {
+    succeed({"field", pyramid(), "--step", "0", "-o", (folder / "field.vdb").string()});
+    openvdb::initialize();
+    openvdb::io::File file((folder / "field.vdb").string());
+    file.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("field"));
+    ASSERT_TRUE(grid);
+    const Json info = succeed({"info", pyramid(), "--json"}).json();
+    EXPECT_EQ(grid->activeVoxelCount(), info["control_points"].get<std::uint64_t>());
+    const auto centreOfTube = grid->transform().worldToIndex({20, 0, 0});
+    EXPECT_LT(grid->tree().getValue(openvdb::Coord::round(centreOfTube)), 0) << "negative inside";
+    EXPECT_GT(grid->tree().getValue(openvdb::Coord::round(grid->transform().worldToIndex({0, 0, 0}))), 0);
+}
+
+TEST_F(TorusPyramid, IsListedStepByStep) {
+    const Result text = succeed({"info", pyramid()});
+    EXPECT_NE(text.out.find("coefficients stored for"), std::string::npos);
+    const Json info = succeed({"info", pyramid(), "--json"}).json();
+    EXPECT_EQ(info["kind"], "pyramid");
+    EXPECT_EQ(info["format_version"], 1);
+    const Json& steps = info["steps"];
+    EXPECT_EQ(steps[0]["control_points"], info["control_points"]);
+    EXPECT_EQ(steps[0]["coefficients"], info["coefficients_stored"]);
+    for (std::size_t s = 0; s + 1 < steps.size(); ++s) {
+        EXPECT_EQ(steps[s]["step"], s);
+        EXPECT_EQ(steps[s]["details"].get<std::int64_t>() + steps[s + 1]["coefficients"].get<std::int64_t>(),
+                  steps[s]["coefficients"].get<std::int64_t>());
+        // One axis is halved at a time.
+        double ratio = 1;
+        for (int axis = 0; axis < 3; ++axis)
+            ratio *= steps[s + 1]["spacing"][axis].get<double>() / steps[s]["spacing"][axis].get<double>();
+        EXPECT_DOUBLE_EQ(ratio, 2);
+    }
+    EXPECT_EQ(steps.back()["coefficients"], steps.back()["control_points"]);
+    EXPECT_EQ(steps.back()["control_points"], 64) << "one node";
+    EXPECT_EQ(steps.back()["nodes"], 1);
+}
+
+// ---- level sets ----
+
+openvdb::FloatGrid::Ptr ballLevelSet(double radius) {
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(3.0f);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setName("ball");
+    const int reach = static_cast<int>(radius) + 6;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = -reach; y <= reach; ++y)
+            for (int z = -reach; z <= reach; ++z) {
+                const double d = std::sqrt(double(x * x + y * y + z * z)) - radius;
+                if (std::abs(d) < 3)
+                    grid->tree().setValueOn({x, y, z}, static_cast<float>(d));
+                else if (d < 0)
+                    grid->tree().setValueOff({x, y, z}, -3.0f);
+            }
+    return grid;
+}
+
+TEST(LevelSet, IsInsideWhereItIsNegative) {
+    const Folder folder;
+    openvdb::io::File((folder / "ball.vdb").string()).write({ballLevelSet(10)});
+    const Result result =
+        succeed({"lod", (folder / "ball.vdb").string(), "--levels", "0", "-o", (folder / "o").string()});
+    EXPECT_NE(result.err.find("iso 0"), std::string::npos) << result.err;
+    const Json report = jsonFile(folder / "o/report.json");
+    EXPECT_EQ(report["input"]["kind"], "level set");
+    EXPECT_EQ(report["input"]["iso"], 0.0);
+    EXPECT_EQ(report["fit"]["method"], "distance");
+    const double volume = 4.0 / 3.0 * std::acos(-1.0) * 1000;
+    EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), volume, 0.01 * volume);
+
+    succeed({"lod", (folder / "ball.vdb").string(), "--iso", "1", "--levels", "0", "-o",
+             (folder / "p").string()});
+    const double larger = 4.0 / 3.0 * std::acos(-1.0) * 1331;
+    EXPECT_NEAR(jsonFile(folder / "p/report.json")["levels"][0]["volume"].get<double>(), larger,
+                0.01 * larger);
+    succeed(
+        {"lod", (folder / "ball.vdb").string(), "--invert", "--levels", "0", "-o", (folder / "i").string()});
+    EXPECT_NEAR(jsonFile(folder / "i/report.json")["levels"][0]["volume"].get<double>(), -volume,
+                0.01 * volume);
+    succeed({"lod", (folder / "ball.vdb").string(), "--fit", "binary", "--levels", "0", "-o",
+             (folder / "b").string()});
+    EXPECT_NEAR(jsonFile(folder / "b/report.json")["levels"][0]["volume"].get<double>(), volume,
+                0.05 * volume);
+}
+
+// ---- info of other files ----
+
+TEST(Info, DescribesAnImage) {
+    const Folder folder;
+    const Size size{24, 20, 16};
+    writeNrrd(folder / "a.nrrd", size, greyBall(size, 5),
+              "space: left-posterior-superior\nspace directions: (0,2,0) (-1,0,0) (0,0,3)\nspace origin: "
+              "(5,6,7)\n");
+    const Json info = succeed({"info", (folder / "a.nrrd").string(), "--json"}).json();
+    EXPECT_EQ(info["kind"], "image");
+    EXPECT_EQ(info["component_type"], "int16");
+    EXPECT_EQ(info["dimensions"], Json({24, 20, 16}));
+    EXPECT_EQ(info["spacing"], Json({2.0, 1.0, 3.0}));
+    EXPECT_EQ(info["origin"], Json({5.0, 6.0, 7.0}));
+    EXPECT_EQ(info["direction"], Json({{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}));
+    EXPECT_EQ(info["range"], Json({-100.0, 100.0}));
+    EXPECT_EQ(info["percentiles"]["50"], -100.0);
+    EXPECT_NE(succeed({"info", (folder / "a.nrrd").string()}).out.find("24 x 20 x 16"), std::string::npos);
+}
+
+TEST(Info, DescribesAMesh) {
+    const Folder folder;
+    writeStl(folder / "torus.stl", torus(20, 8));
+    const Json info = succeed({"info", (folder / "torus.stl").string(), "--json"}).json();
+    EXPECT_EQ(info["kind"], "mesh");
+    EXPECT_EQ(info["triangles"], 2 * 48 * 24);
+    EXPECT_EQ(info["vertices"], 48 * 24);
+    EXPECT_EQ(info["genus"], 1);
+    EXPECT_DOUBLE_EQ(info["bounds"][1][0].get<double>(), 28);
+    EXPECT_DOUBLE_EQ(info["bounds"][0][2].get<double>(), -8);
+}
+
+TEST(Info, ListsTheGridsOfAVdb) {
+    const Folder folder;
+    openvdb::io::File((folder / "ball.vdb").string()).write({ballLevelSet(6)});
+    const Json info = succeed({"info", (folder / "ball.vdb").string(), "--json"}).json();
+    EXPECT_EQ(info["kind"], "vdb");
+    ASSERT_EQ(info["grids"].size(), 1u);
+    EXPECT_EQ(info["grids"][0]["name"], "ball");
+    EXPECT_EQ(info["grids"][0]["type"], "float");
+    EXPECT_EQ(info["grids"][0]["class"], "level set");
+}
+
+}  // namespace
+}  // namespace isowave::tools_test

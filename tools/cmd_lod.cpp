@@ -1,0 +1,237 @@
+// isowave lod INPUT -o FOLDER: read -> fit -> analyse, polygonizing each wanted step as it passes by, so that
+// one field is in memory at a time; then report.json, then everything is put into the folder at once.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <optional>
+
+#include "base/error.h"
+#include "polygonize/measure.h"
+#include "polygonize/topology.h"
+#include "tools/commands.h"
+#include "tools/input.h"
+#include "tools/output.h"
+#include "tools/steps.h"
+
+namespace isowave::tools {
+namespace {
+
+// Which steps are written, and what their files are called.
+class Wanted {
+  public:
+    Wanted(const Settings& settings, std::string name, MeshFormat format)
+        : name_(std::move(name)), format_(format) {
+        if (settings.levels && settings.steps)
+            throw UsageError("--levels and --steps exclude each other; level L is step 3L");
+        bySteps_ = settings.steps.has_value();
+        const StepRange range = bySteps_ ? *settings.steps : settings.levels.value_or(StepRange{});
+        first_ = range.first * stride();
+        if (range.last) last_ = *range.last * stride();
+    }
+
+    bool has(int step) const { return step >= first_ && (!last_ || step <= *last_) && step % stride() == 0; }
+    MeshFormat format() const { return format_; }
+    int first() const { return first_; }
+    std::optional<int> last() const { return last_; }
+    // part_L2.ply, part_s5.ply
+    std::string fileName(int step) const {
+        return fmt::format("{}_{}{}{}", name_, bySteps_ ? 's' : 'L', step / stride(), extensionOf(format_));
+    }
+
+  private:
+    int stride() const { return bySteps_ ? 1 : kStepsPerLevel; }
+
+    std::string name_;
+    MeshFormat format_;
+    bool bySteps_ = false;
+    int first_ = 0;
+    std::optional<int> last_;
+};
+
+// Makes and measures one mesh a step, level 0 first: the others are measured against it.
+class Ladder {
+  public:
+    Ladder(const Wanted& wanted, const Settings& settings, const Solid& solid, OutputFolder& out,
+           Console& console, StageClock& clock)
+        : wanted_(wanted),
+          settings_(settings),
+          openBorder_(solid.openBorder),
+          space_(outputSpace(solid, settings)),
+          out_(out),
+          console_(console),
+          clock_(clock) {}
+
+    // REQUIRES: steps in ascending order, step 0 first.
+    void visit(int step, const BSplineField& field) {
+        if (vanished_ || (step != 0 && !wanted_.has(step))) return;
+        const double begin = clock_.secondsSoFar();
+        TriangleMesh mesh = [&] {
+            const StageClock::Scope scope(clock_, "polygonize");
+            return meshOf(field, openBorder_, settings_, console_.progress());
+        }();
+        vanished_ = mesh.triangles.empty();
+        if (wanted_.has(step)) {
+            Json level = fieldJson(step, field);
+            if (vanished_)
+                console_.say(
+                    fmt::format("step {}: the whole solid has vanished; the ladder ends before it", step));
+            else
+                level["file"] = write(step, mesh);
+            measure(level, step, mesh);
+            level["seconds"] = clock_.secondsSoFar() - begin;
+            levels_.push_back(std::move(level));
+        }
+        if (step == 0) reference_ = std::move(mesh);
+    }
+
+    bool empty() const { return reference_.triangles.empty(); }
+    const Json& levels() const { return levels_; }
+
+  private:
+    static Json fieldJson(int step, const BSplineField& field) {
+        Json json;
+        json["step"] = step;
+        json["level"] = step % kStepsPerLevel == 0 ? Json(step / kStepsPerLevel) : Json(nullptr);
+        json["file"] = nullptr;
+        json["spacing"] = triple(field.transform().voxelSize());
+        json["control_points"] = field.controlPointCount();
+        json["nodes"] = definedNodeCount(field);
+        return json;
+    }
+
+    std::string write(int step, const TriangleMesh& mesh) {
+        const StageClock::Scope scope(clock_, "write");
+        const std::string name = wanted_.fileName(step);
+        writeMesh(out_.place(name), mesh, wanted_.format(), {.space = space_});
+        console_.progress().check();
+        return name;
+    }
+
+    void measure(Json& json, int step, const TriangleMesh& mesh) {
+        const StageClock::Scope scope(clock_, "measure");
+        putTopology(json, topologyOf(mesh));
+        OneSidedDistance to, from;
+        if (step != 0 && !mesh.triangles.empty()) {
+            if (!target_) target_.emplace(reference_);
+            to = target_->distanceFrom(mesh, 0, console_.progress());
+            from = DistanceTarget(mesh).distanceFrom(reference_, 0, console_.progress());
+        }
+        const bool known = !mesh.triangles.empty();
+        json["rms_to_level0"] = known ? finite(to.rms) : Json(nullptr);
+        json["max_to_level0"] = known ? finite(to.max) : Json(nullptr);
+        json["rms_from_level0"] = known ? finite(from.rms) : Json(nullptr);
+        json["max_from_level0"] = known ? finite(from.max) : Json(nullptr);
+    }
+
+    const Wanted& wanted_;
+    const Settings& settings_;
+    std::optional<Solid::Border> openBorder_;
+    Space space_;
+    OutputFolder& out_;
+    Console& console_;
+    StageClock& clock_;
+    TriangleMesh reference_;                // level 0
+    std::optional<DistanceTarget> target_;  // over reference_
+    bool vanished_ = false;
+    Json levels_ = Json::array();
+};
+
+// Passes every step by the ladder; says what the pyramid stores.
+struct PyramidCounts {
+    int steps = 0;
+    std::int64_t coefficientsStored = 0, controlPoints = 0;
+};
+
+PyramidCounts climb(Solid solid, const Wanted& wanted, Ladder& ladder, const std::string& name,
+                    Console& console, StageClock& clock) {
+    if (!solid.pyramid) {
+        const StageClock::Scope scope(clock, "analyse");
+        wavelets::AnalyseOptions options;
+        if (wanted.last()) options.maxSteps = *wanted.last();
+        solid.pyramid =
+            wavelets::analyse(*solid.field, options, console.progress(),
+                              [&](int step, const BSplineField& field) { ladder.visit(step, field); });
+    } else {
+        const StageClock::Scope scope(clock, "synthesise");
+        for (int step = 0; step <= solid.pyramid->stepCount(); ++step)
+            if (step == 0 || wanted.has(step))
+                ladder.visit(step, solid.pyramid->field(step, console.progress()));
+    }
+    const wavelets::Pyramid& pyramid = *solid.pyramid;
+    if (ladder.empty()) throw InputError(name, "has no surface; nothing to polygonize");
+    if (wanted.first() > pyramid.stepCount())
+        throw InputError(name,
+                         fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", pyramid.stepCount(),
+                                     pyramid.stepCount() / kStepsPerLevel, wanted.first()));
+    if (wanted.last() && *wanted.last() > pyramid.stepCount())
+        console.say(
+            fmt::format("{}: one node is left at step {}; the ladder ends there", name, pyramid.stepCount()));
+    return {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid)};
+}
+
+std::string numberOf(const Json& json) {
+    if (json.is_null()) return "-";
+    return json.is_number_integer() ? grouped(json.get<std::int64_t>()) : shortNumber(json.get<double>());
+}
+
+std::string tableOf(const Json& report, const std::string& unit) {
+    Table table({"file", "step", "voxel" + unit, "control points", "triangles", "components", "genus",
+                 "volume" + (unit.empty() ? "" : unit + "^3"), "rms to level 0" + unit,
+                 "max to level 0" + unit, "closed"});
+    for (const Json& level : report["levels"]) {
+        const Json& spacing = level["spacing"];
+        table.row({level["file"].is_null() ? "(vanished)" : level["file"].get<std::string>(),
+                   numberOf(level["step"]),
+                   fmt::format("{:.4g}x{:.4g}x{:.4g}", spacing[0].get<double>(), spacing[1].get<double>(),
+                               spacing[2].get<double>()),
+                   numberOf(level["control_points"]), numberOf(level["triangles"]),
+                   numberOf(level["components"]), numberOf(level["genus"]), numberOf(level["volume"]),
+                   numberOf(level["rms_to_level0"]), numberOf(level["max_to_level0"]),
+                   level["closed"].get<bool>() && level["manifold"].get<bool>() ? "yes" : "no"});
+    }
+    const double ratio = report["coefficients_stored"].get<double>() / report["control_points"].get<double>();
+    return table.text() + fmt::format("{} coefficients stored for {} control points (x{:.3f})\n",
+                                      numberOf(report["coefficients_stored"]),
+                                      numberOf(report["control_points"]), ratio);
+}
+
+}  // namespace
+
+int runLod(const Settings& settings, Console& console) {
+    StageClock clock;
+    OutputFolder out(*settings.output);
+    const Wanted wanted(settings, out.name(), settings.format.value_or(MeshFormat::ply));
+    const std::string name = settings.files[0].string();
+    try {
+        Solid solid = loadSolid(settings.files[0], settings, console, clock);
+        const Space space = outputSpace(solid, settings);
+
+        Json report;
+        report["version"] = 1;
+        report["input"] = solid.input;
+        report["fit"] = solid.fit;
+        report["K"] = solid.K();
+        Ladder ladder(wanted, settings, solid, out, console, clock);
+        const PyramidCounts counts = climb(std::move(solid), wanted, ladder, name, console, clock);
+        report["levels"] = ladder.levels();
+        report["steps"] = counts.steps;
+        report["coefficients_stored"] = counts.coefficientsStored;
+        report["control_points"] = counts.controlPoints;
+        report["seconds"] = clock.seconds();
+        report["peak_memory_bytes"] = peakMemoryBytes();
+        report["threads"] = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+
+        writeJson(out.place("report.json").string(), report);
+        console.progress().check();
+        const bool toStdout = settings.jsonFile == "-";
+        if (settings.jsonFile && !toStdout) writeJson(*settings.jsonFile, report);
+        out.commit();
+        console.print(toStdout ? textOf(report)
+                               : tableOf(report, space == Space::unspecified ? "" : " [mm]"));
+    } catch (const OperationError& error) {
+        throw OperationError(out.publicText(error.what()));
+    }
+    return 0;
+}
+
+}  // namespace isowave::tools

@@ -1,0 +1,51 @@
+// isowave mesh INPUT --step S -o FILE: one step as a mesh.
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "polygonize/topology.h"
+#include "tools/commands.h"
+#include "tools/input.h"
+#include "tools/output.h"
+#include "tools/steps.h"
+
+namespace isowave::tools {
+namespace {
+
+// A wrong extension is a wrong command line here, not bad data.
+MeshFormat formatOf(const Settings& settings) {
+    if (settings.format) return *settings.format;
+    try {
+        return meshFormatOf(*settings.output);
+    } catch (const InputError& error) {
+        throw UsageError(std::string("-o: ") + error.what());
+    }
+}
+
+}  // namespace
+
+int runMesh(const Settings& settings, Console& console) {
+    StageClock clock;
+    const MeshFormat format = formatOf(settings);
+    const int step = wantedStep(settings);
+    const std::string name = settings.files[0].string();
+    OutputFile out(*settings.output);
+    Solid solid = loadSolid(settings.files[0], settings, console, clock);
+    const Space space = outputSpace(solid, settings);
+    const auto openBorder = solid.openBorder;
+    const BSplineField field = fieldAtStep(std::move(solid), step, name, console, clock);
+    const TriangleMesh mesh = meshOf(field, openBorder, settings, console.progress());
+    if (mesh.triangles.empty())
+        throw InputError(name,
+                         fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
+    writeMesh(*settings.output, mesh, format, {.space = space});
+    out.commit();
+
+    const MeshTopology topology = topologyOf(mesh);
+    console.print(fmt::format(
+        "{}: step {}, {} triangles, {} components, genus {}, volume {}, {}\n", settings.output->string(),
+        step, grouped(topology.triangles), grouped(topology.components), grouped(topology.genus),
+        shortNumber(topology.volume), topology.closed() && topology.manifold() ? "closed" : "NOT closed"));
+    return 0;
+}
+
+}  // namespace isowave::tools

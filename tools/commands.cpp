@@ -1,0 +1,291 @@
+#include "tools/commands.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace isowave::tools {
+namespace {
+
+// ---- one function a type: text -> value, UsageError in words when it is not one ----
+
+template <class Number>
+Number parseWhole(const std::string& text, const char* expected) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || text.empty())
+        throw UsageError("'" + text + "' is not " + expected);
+    return value;
+}
+
+double number(const std::string& text) {
+    const double value = parseWhole<double>(text, "a number");
+    if (!std::isfinite(value)) throw UsageError("'" + text + "' is not a finite number");
+    return value;
+}
+
+double positive(const std::string& text) {
+    const double value = number(text);
+    if (value <= 0) throw UsageError("'" + text + "' is not above 0");
+    return value;
+}
+
+std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high) {
+    const auto value = parseWhole<std::int64_t>(text, "a whole number");
+    if (value < low || value > high)
+        throw UsageError("'" + text + "' is not between " + std::to_string(low) + " and " +
+                         std::to_string(high));
+    return value;
+}
+
+constexpr int kMaxStep = 10'000;
+
+// A..B, A.., ..B or A.
+StepRange range(const std::string& text) {
+    const auto step = [](const std::string& t) { return static_cast<int>(integer(t, 0, kMaxStep)); };
+    const auto dots = text.find("..");
+    StepRange result;
+    if (dots == std::string::npos) {
+        result.first = step(text);
+        result.last = result.first;
+        return result;
+    }
+    const std::string first = text.substr(0, dots), last = text.substr(dots + 2);
+    if (first.empty() && last.empty()) throw UsageError("'..' names no number; write for example 0..3");
+    if (!first.empty()) result.first = step(first);
+    if (!last.empty()) result.last = step(last);
+    if (result.last && *result.last < result.first)
+        throw UsageError("'" + text + "' runs backwards; write the smaller number first");
+    return result;
+}
+
+// AxBxC; commas will do too.
+template <class Number, class Parse>
+std::array<Number, 3> triple(const std::string& text, const char* example, Parse parse) {
+    std::array<Number, 3> result{};
+    std::size_t begin = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t end = text.find_first_of("x,", begin);
+        if ((end == std::string::npos) != (axis == 2))
+            throw UsageError("'" + text + "' is not three numbers such as " + example);
+        result[axis] = parse(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return result;
+}
+
+template <class Value, std::size_t N>
+Value choice(const std::string& text, const std::array<std::pair<std::string_view, Value>, N>& choices) {
+    std::string list;
+    for (const auto& [name, value] : choices) {
+        if (text == name) return value;
+        list += (list.empty() ? "" : ", ") + std::string(name);
+    }
+    throw UsageError("'" + text + "' is not one of " + list);
+}
+
+// ---- the table ----
+
+constexpr std::string_view kFit = "lod analyse mesh field";          // those that turn an input into a field
+constexpr std::string_view kImages = "lod analyse mesh field info";  // those that read images
+constexpr std::string_view kAll = "lod analyse mesh field info check compare";
+
+constexpr Command kCommands[] = {
+    {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
+     "INPUT is an image (NIfTI, NRRD, MetaImage, TIFF; a folder of DICOM, TIFF or PNG slices; raw with "
+     "--size), a "
+     "mesh (STL, OBJ, PLY, OFF), a level set (.vdb) or a pyramid (analyse). -o out/part makes the folder "
+     "out/part "
+     "with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes are part_s0.ply, "
+     "part_s1.ply, ... "
+     "Level L is step 3L: every axis halved L times. The ladder ends where one node is left, or before the "
+     "first "
+     "level at which the whole solid has vanished. A run that fails or is interrupted leaves the folder as "
+     "it was.",
+     true, runLod},
+    {"analyse", "INPUT", "a solid -> its pyramid, lossless, in one .vdb",
+     "Takes what lod takes. Every step of the pyramid can be had back with mesh and field.", true,
+     runAnalyse},
+    {"mesh", "INPUT", "any step of a pyramid (or of a solid) -> a mesh file",
+     "The format follows from the name of the output, or from --format.", true, runMesh},
+    {"field", "INPUT", "any step of a pyramid (or of a solid) -> its B-spline field as .vdb for other tools",
+     "The grid 'field' holds control points, negative inside; outside the band they are plus or minus K.",
+     true, runField},
+    {"info", "FILE", "what is in an image, a mesh, a .vdb or a pyramid",
+     "Prints size, spacing, orientation and the range of values of an image; counts and bounds of a mesh; "
+     "the grids "
+     "of a .vdb; a table of the steps of a pyramid.",
+     false, runInfo},
+    {"check", "MESH", "is a mesh closed, 2-manifold and oriented? components, genus, volume, area",
+     "Reads the mesh as it is, merges equal points and repairs nothing. Exit code 4 when it is not closed, "
+     "not "
+     "2-manifold or not oriented.",
+     false, runCheck},
+    {"compare", "A B", "distances between two meshes, both ways, and their volume difference",
+     "Distances from samples of one surface to the nearest point of the other: mean and rms weighted by "
+     "area, "
+     "max over the samples, and a bound that no point of the surface exceeds.",
+     false, runCompare},
+    {"help", "[COMMAND]", "this overview, or the options of one subcommand", "", false, runHelp},
+    {"completion", "bash", "a completion script for the shell: source <(isowave completion bash)", "", false,
+     runCompletion},
+};
+
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kFormats{{{"stl", MeshFormat::stl},
+                                                                           {"ply", MeshFormat::ply},
+                                                                           {"obj", MeshFormat::obj},
+                                                                           {"off", MeshFormat::off},
+                                                                           {"glb", MeshFormat::glb}}};
+constexpr std::array<std::pair<std::string_view, FitMethod>, 2> kMethods{
+    {{"binary", FitMethod::binary}, {"distance", FitMethod::distance}}};
+constexpr std::array<std::pair<std::string_view, Space>, 2> kSpaces{
+    {{"lps", Space::lps}, {"ras", Space::ras}}};
+constexpr std::array<std::pair<std::string_view, bool>, 2> kEndians{{{"little", false}, {"big", true}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypes{{{"int8", "int8"},
+                                                                               {"uint8", "uint8"},
+                                                                               {"int16", "int16"},
+                                                                               {"uint16", "uint16"},
+                                                                               {"int32", "int32"},
+                                                                               {"uint32", "uint32"},
+                                                                               {"float32", "float32"},
+                                                                               {"float64", "float64"}}};
+constexpr std::int64_t kHuge = std::int64_t{1} << 40;
+
+constexpr Option kOptions[] = {
+    // What comes out.
+    {"-o,--output", "PATH", "", "where the result goes: a folder for lod, a file otherwise", kFit,
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.output = v;
+     }},
+    {"--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)", "lod",
+     [](Settings& s, const std::string& v) { s.levels = range(v); }},
+    {"--steps", "A..B", "", "steps instead of levels; three steps are a level", "lod",
+     [](Settings& s, const std::string& v) { s.steps = range(v); }},
+    {"--step", "S", "0", "which step", "mesh field",
+     [](Settings& s, const std::string& v) { s.step = static_cast<int>(integer(v, 0, kMaxStep)); }},
+    {"--level", "L", "", "which level, instead of --step", "mesh field",
+     [](Settings& s, const std::string& v) { s.level = static_cast<int>(integer(v, 0, kMaxStep / 3)); }},
+    {"--format", "stl|ply|obj|off|glb", "ply for lod, by the file's extension for mesh",
+     "format of the meshes", "lod mesh",
+     [](Settings& s, const std::string& v) { s.format = choice(v, kFormats); }},
+    {"--space", "lps|ras", "lps for images, as it is for meshes",
+     "axes of the written coordinates, for medical images and meshes that say SPACE=", "lod mesh",
+     [](Settings& s, const std::string& v) { s.space = choice(v, kSpaces); }},
+    {"--refine", "1|2|4", "1", "samples of a node along each axis: more triangles, closer to the spline",
+     "lod mesh",
+     [](Settings& s, const std::string& v) {
+         s.refine =
+             choice(v, std::array<std::pair<std::string_view, int>, 3>{{{"1", 1}, {"2", 2}, {"4", 4}}});
+     }},
+    {"--json", "FILE", "", "the report goes to this file too; - is standard output", "lod",
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.jsonFile = v;
+     }},
+    {"--json", "", "", "print JSON instead of text", "info check compare",
+     [](Settings& s, const std::string&) { s.json = true; }},
+
+    // What the solid is.
+    {"--iso", "V", "masks: midpoint; labels: not zero; level sets: 0; other images: required",
+     "the surface is where the value is V; inside is where it is larger (level sets: smaller)", kFit,
+     [](Settings& s, const std::string& v) { s.iso = number(v); }},
+    {"--label", "L", "every label but 0", "the solid is where a label image is L", kFit,
+     [](Settings& s, const std::string& v) { s.label = number(v); }},
+    {"--invert", "", "", "swap inside and outside", kFit,
+     [](Settings& s, const std::string&) { s.invert = true; }},
+    {"--open-border", "", "", "no cap where the solid touches the border of the image", kFit,
+     [](Settings& s, const std::string&) { s.openBorder = true; }},
+    {"--voxels", "N", "256", "meshes: sample with N voxels along the longest axis", kFit,
+     [](Settings& s, const std::string& v) { s.voxels = integer(v, 4, 1'000'000'000); }},
+    {"--voxel", "LEN", "", "meshes: sample with voxels of this size (world units)", kFit,
+     [](Settings& s, const std::string& v) { s.voxel = positive(v); }},
+
+    // The fit.
+    {"--fit", "binary|distance", "binary for masks and labels, otherwise distance",
+     "from signs alone (filtered weights), or from signed distances", kFit,
+     [](Settings& s, const std::string& v) { s.fit = choice(v, kMethods); }},
+    {"--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side", kFit,
+     [](Settings& s, const std::string& v) { s.halfWidth = positive(v); }},
+    {"--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W", kFit,
+     [](Settings& s, const std::string& v) { s.band = positive(v); }},
+
+    // How to read the input.
+    {"--size", "NXxNYxNZ", "", "the image has no header: voxels on each axis, x fastest", kImages,
+     [](Settings& s, const std::string& v) {
+         s.size = triple<std::int64_t>(v, "256x256x108",
+                                       [](const std::string& t) { return integer(t, 1, kHuge); });
+     }},
+    {"--type", "int8|uint8|int16|uint16|int32|uint32|float32|float64", "",
+     "headerless image: type of a voxel", kImages,
+     [](Settings& s, const std::string& v) { s.type = std::string(choice(v, kTypes)); }},
+    {"--spacing", "XxYxZ", "1x1x1 where the file has none", "voxel size in mm; replaces the header's",
+     kImages,
+     [](Settings& s, const std::string& v) { s.spacing = triple<double>(v, "0.957x0.957x1.5", positive); }},
+    {"--endian", "little|big", "little", "headerless image: byte order", kImages,
+     [](Settings& s, const std::string& v) { s.bigEndian = choice(v, kEndians); }},
+    {"--header-bytes", "N", "0", "headerless image: bytes to skip at the start", kImages,
+     [](Settings& s, const std::string& v) { s.headerBytes = integer(v, 0, kHuge); }},
+    {"--series", "ID", "", "DICOM folder with several series: a part of its UID or description", kImages,
+     [](Settings& s, const std::string& v) { s.series = v; }},
+    {"--grid", "NAME", "", ".vdb with several level sets: which grid", kFit,
+     [](Settings& s, const std::string& v) { s.grid = v; }},
+
+    // Measuring.
+    {"--self-intersections", "", "", "count pairs of triangles that intersect (slow)", "check",
+     [](Settings& s, const std::string&) { s.selfIntersections = true; }},
+    {"--sampling", "LEN", "1/500 of the diagonal", "largest distance of a point of the surface to a sample",
+     "compare", [](Settings& s, const std::string& v) { s.sampling = positive(v); }},
+
+    // How the job runs.
+    {"--threads", "N", "all", "threads to use; the result does not depend on it, to the bit", kAll,
+     [](Settings& s, const std::string& v) { s.threads = static_cast<int>(integer(v, 1, 4096)); }},
+    {"--max-memory", "GB", "70 % of this computer's", "refuse jobs that would take more", kImages,
+     [](Settings& s, const std::string& v) { s.maxMemory = positive(v); }},
+    {"--quiet", "", "", "no progress and no remarks on standard error", kAll,
+     [](Settings& s, const std::string&) { s.quiet = true; }},
+    {"--markdown", "", "", "everything, as markdown", "help",
+     [](Settings& s, const std::string&) { s.markdown = true; }},
+};
+
+constexpr ExitCode kExitCodes[] = {
+    {0, "done"},
+    {1, "the work failed: a file could not be written, memory did not suffice"},
+    {2, "the command line is wrong"},
+    {3, "the input is not what it must be; one line says what was found, what was expected and what to do"},
+    {4, "check: the mesh is not closed, not 2-manifold or not oriented"},
+    {130, "interrupted (Ctrl-C); nothing was left behind"},
+};
+
+}  // namespace
+
+bool Option::belongsTo(std::string_view command) const {
+    std::string_view rest = commands;
+    while (!rest.empty()) {
+        const auto space = std::min(rest.find(' '), rest.size());
+        if (rest.substr(0, space) == command) return true;
+        rest.remove_prefix(std::min(space + 1, rest.size()));
+    }
+    return false;
+}
+
+std::string_view Option::longName() const { return names.substr(names.find("--")); }
+
+int Command::argumentCount() const {
+    return static_cast<int>(std::count(arguments.begin(), arguments.end(), ' ')) + 1;
+}
+
+std::span<const Command> commands() { return kCommands; }
+std::span<const Option> options() { return kOptions; }
+std::span<const ExitCode> exitCodes() { return kExitCodes; }
+
+const Command* findCommand(std::string_view name) {
+    const auto found = std::find_if(std::begin(kCommands), std::end(kCommands),
+                                    [&](const Command& command) { return command.name == name; });
+    return found == std::end(kCommands) ? nullptr : found;
+}
+
+}  // namespace isowave::tools

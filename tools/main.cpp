@@ -1,0 +1,68 @@
+// isowave: one subcommand, one exit code, one line on standard error when it goes wrong.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <optional>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "tools/cli.h"
+#include "tools/console.h"
+#include "tools/help.h"
+
+namespace {
+
+namespace tools = isowave::tools;
+
+int run(int argc, char** argv) {
+    const tools::Invocation invocation = tools::parseCommandLine(argc, argv);
+    const tools::Settings& settings = invocation.settings;
+    tools::Console console(settings.quiet);
+    if (!invocation.command) {
+        console.print(invocation.version ? "isowave " ISOWAVE_VERSION "\n" : tools::overview());
+        return 0;
+    }
+    if (settings.help) {
+        console.print(tools::helpFor(*invocation.command));
+        return 0;
+    }
+    std::optional<tbb::global_control> threads;
+    if (settings.threads > 0)
+        threads.emplace(tbb::global_control::max_allowed_parallelism,
+                        static_cast<std::size_t>(settings.threads));
+    const int code = invocation.command->run(settings, console);
+    console.finish();
+    return code;
+}
+
+int complain(int code, std::string message) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::cerr << "isowave: " << message << '\n';
+    return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    tools::installSignalHandlers();
+    try {
+        const int code = run(argc, argv);
+        if (!std::cout.flush()) return complain(1, "standard output could not be written; is the disk full?");
+        return code;
+    } catch (const tools::UsageError& error) {
+        return complain(2, error.what());
+    } catch (const isowave::InputError& error) {
+        return complain(3, error.what());
+    } catch (const isowave::Cancelled&) {
+        return complain(130, "interrupted; nothing was left behind");
+    } catch (const isowave::OperationError& error) {
+        return complain(1, error.what());
+    } catch (const std::bad_alloc&) {
+        return complain(1, "memory did not suffice; take fewer voxels or free some memory");
+    } catch (const std::exception& error) {
+        return complain(1, fmt::format("failed: {}", error.what()));
+    }
+}

@@ -1,0 +1,108 @@
+#include "tools/output.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace isowave::tools {
+namespace fs = std::filesystem;
+namespace {
+
+// Absolute, without "." and "..", without a slash at the end: out/part/ and out/part are one folder.
+fs::path tidy(const fs::path& path) {
+    fs::path result = fs::absolute(path).lexically_normal();
+    if (!result.has_filename()) result = result.parent_path();
+    return result;
+}
+
+}  // namespace
+
+MadeFolders::MadeFolders(const fs::path& folder) {
+    std::vector<fs::path> missing;
+    std::error_code error;
+    for (fs::path p = folder; !p.empty() && !fs::exists(p, error) && p != p.parent_path();
+         p = p.parent_path())
+        missing.push_back(p);
+    std::reverse(missing.begin(), missing.end());
+    for (const fs::path& p : missing) {
+        if (fs::create_directory(p, error)) made_.push_back(p);
+        if (error) break;
+    }
+    if (fs::is_directory(folder)) return;
+    const std::string reason = error ? error.message() : "a file of that name is in the way";
+    removeMade();
+    throw OperationError(folder.string(), "cannot make this folder (" + reason + "); choose another output");
+}
+
+MadeFolders::~MadeFolders() { removeMade(); }
+
+void MadeFolders::removeMade() {
+    std::error_code ignored;
+    for (auto p = made_.rbegin(); p != made_.rend(); ++p) fs::remove(*p, ignored);  // only empty ones go
+}
+
+OutputFolder::OutputFolder(const fs::path& folder) : folder_(tidy(folder)), parents_(folder_.parent_path()) {
+    std::error_code error;
+    if (!folder_.has_filename())
+        throw OperationError(folder.string(), "is not a name for a folder; give -o out/part");
+    if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
+        throw OperationError(folder_.string(), "is a file; -o names the folder that gets one mesh a level");
+    // Inside the folder when there is one (it may be a link to another disk), beside it when there is none.
+    const fs::path where = fs::exists(folder_, error) ? folder_ : folder_.parent_path();
+    const fs::path hidden = where / ("." + name() + ".part-" + std::to_string(::getpid()));
+    if (!fs::create_directory(hidden, error)) {
+        const std::string reason = error ? error.message() : "a temporary folder is in the way";
+        throw OperationError(where.string(), "cannot write here (" + reason + "); choose another output");
+    }
+    hidden_ = hidden;
+}
+
+OutputFolder::~OutputFolder() {
+    std::error_code ignored;
+    if (!hidden_.empty()) fs::remove_all(hidden_, ignored);
+}
+
+fs::path OutputFolder::place(const std::string& name) {
+    names_.push_back(name);
+    return hidden_ / name;
+}
+
+void OutputFolder::commit() {
+    std::error_code error;
+    const auto failed = [&](const fs::path& place) {
+        return OperationError(place.string(), "cannot put the finished file here (" + error.message() + ")");
+    };
+    if (!fs::exists(folder_)) {
+        fs::rename(hidden_, folder_, error);  // all at once
+        if (error) throw failed(folder_);
+    } else {
+        for (const std::string& name : names_)
+            if (fs::is_directory(folder_ / name))
+                throw OperationError((folder_ / name).string(),
+                                     "is a folder, where a result should go; move it away");
+        for (const std::string& name : names_) {
+            fs::rename(hidden_ / name, folder_ / name, error);
+            if (error) throw failed(folder_ / name);
+        }
+        fs::remove(hidden_, error);
+    }
+    hidden_.clear();
+    parents_.keep();
+}
+
+std::string OutputFolder::publicText(std::string message) const {
+    const std::string from = hidden_.string(), to = folder_.string();
+    if (from.empty()) return message;
+    for (std::size_t i = 0; (i = message.find(from, i)) != std::string::npos; i += to.size())
+        message.replace(i, from.size(), to);
+    return message;
+}
+
+OutputFile::OutputFile(const fs::path& path) : parents_(tidy(path).parent_path()) {
+    const AtomicFile probe(path);  // throws when the place is a folder or cannot be written
+}
+
+}  // namespace isowave::tools

@@ -1,0 +1,65 @@
+// Where results go: a folder filled all at once, or a file whose folder may have to be made first. Whatever a
+// job that does not reach commit() made is taken away again, folders included.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace isowave::tools {
+
+// Makes the missing folders on the way to `folder`; removes those it made unless keep() was called.
+class MadeFolders {
+  public:
+    // Throws OperationError when that fails.
+    explicit MadeFolders(const std::filesystem::path& folder);
+    ~MadeFolders();
+    MadeFolders(const MadeFolders&) = delete;
+    MadeFolders& operator=(const MadeFolders&) = delete;
+    void keep() { made_.clear(); }
+
+  private:
+    void removeMade();
+
+    std::vector<std::filesystem::path> made_;  // outermost first
+};
+
+// A folder that gets all files of a job at once. They are written into a hidden folder, on the same disk,
+// and renamed at the end.
+class OutputFolder {
+  public:
+    // Throws OperationError at once when nothing can be written there.
+    explicit OutputFolder(const std::filesystem::path& folder);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+    const std::filesystem::path& folder() const { return folder_; }
+    // The last component of the folder's name, which its files start with.
+    std::string name() const { return folder_.filename().string(); }
+    // Where to write the file that will be folder()/name.
+    std::filesystem::path place(const std::string& name);
+    // Puts all files into the folder, over those of the same names; other files there stay.
+    void commit();
+    // Names the folder where a message names the hidden one.
+    std::string publicText(std::string message) const;
+
+  private:
+    std::filesystem::path folder_;
+    MadeFolders parents_;
+    std::filesystem::path hidden_;
+    std::vector<std::string> names_;
+};
+
+// One file as result: makes the folders on the way and finds out at once whether the file can be written.
+class OutputFile {
+  public:
+    explicit OutputFile(const std::filesystem::path& path);
+    // After the file was written (atomically, by its writer).
+    void commit() { parents_.keep(); }
+
+  private:
+    MadeFolders parents_;
+};
+
+}  // namespace isowave::tools

@@ -1,0 +1,80 @@
+// What the command line asked for, with types; filled in by the table of commands.h, read by the subcommands.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "polygonize/mesh_writer.h"
+
+namespace isowave::tools {
+
+// The command line itself is wrong or asks for what this kind of input does not have: exit code 2.
+class UsageError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+enum class FitMethod { binary, distance };
+
+// A..B, both included; without B: as far as the pyramid goes.
+struct StepRange {
+    int first = 0;
+    std::optional<int> last;
+};
+
+struct Settings {
+    std::vector<std::filesystem::path> files;  // the positional arguments, in order
+
+    // What the solid is.
+    std::optional<double> iso;    // in the image's own unit (HU for CT); of a level set in world units
+    std::optional<double> label;  // one value of a label image
+    bool invert = false;
+    bool openBorder = false;
+
+    // How a mesh is sampled.
+    std::optional<std::int64_t> voxels;  // along the longest axis of the bounding box
+    std::optional<double> voxel;         // world units
+
+    // Headerless images, and what other formats lose.
+    std::optional<std::array<std::int64_t, 3>> size;  // voxels, x fastest
+    std::optional<std::string> type;                  // int8 ... float64
+    std::optional<std::array<double, 3>> spacing;     // mm
+    std::optional<bool> bigEndian;
+    std::optional<std::int64_t> headerBytes;
+    std::optional<std::string> series;  // of a DICOM folder
+    std::optional<std::string> grid;    // of a .vdb
+
+    // The fit.
+    std::optional<FitMethod> fit;
+    std::optional<double> halfWidth;  // voxels each side; the library's default is 4
+    std::optional<double> band;       // voxels each side; the library's default is 2
+
+    // Which steps.
+    std::optional<StepRange> levels, steps;
+    std::optional<int> step, level;
+
+    // What comes out.
+    std::optional<std::filesystem::path> output;
+    std::optional<MeshFormat> format;
+    std::optional<Space> space;
+    int refine = 1;                       // samples of a node along each axis: 1, 2, 4
+    std::optional<std::string> jsonFile;  // "-" = standard output
+    bool json = false;
+    bool selfIntersections = false;
+    std::optional<double> sampling;  // world units between samples of a distance
+
+    // How the job runs.
+    int threads = 0;                  // 0 = all
+    std::optional<double> maxMemory;  // GB
+    bool quiet = false;
+    bool markdown = false;
+    bool help = false;
+    std::optional<std::string> topic;  // `completion SHELL`, `help COMMAND`
+};
+
+}  // namespace isowave::tools
