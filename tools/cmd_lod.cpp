@@ -176,8 +176,8 @@ std::string numberOf(const Json& json) {
 
 std::string tableOf(const Json& report, const std::string& unit) {
     Table table({"file", "step", "voxel" + unit, "control points", "triangles", "components", "genus",
-                 "volume" + (unit.empty() ? "" : unit + "^3"), "rms to level 0" + unit,
-                 "max to level 0" + unit, "closed"});
+                 "volume" + (unit.empty() ? "" : " [mm^3]"), "rms to level 0" + unit, "max to level 0" + unit,
+                 "closed"});
     for (const Json& level : report["levels"]) {
         const Json& spacing = level["spacing"];
         table.row({level["file"].is_null() ? "(vanished)" : level["file"].get<std::string>(),
