@@ -29,3 +29,12 @@ configure_package_config_file(cmake/isowaveConfig.cmake.in ${CMAKE_BINARY_DIR}/i
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/isowaveConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/isowaveConfig.cmake ${CMAKE_BINARY_DIR}/isowaveConfigVersion.cmake
         DESTINATION ${package_dir})
+
+# The package as a program elsewhere uses it.
+if(ISOWAVE_TESTS)
+  add_test(NAME Install.AProgramElsewhereBuildsAgainstThePackage
+    COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${PROJECT_SOURCE_DIR}
+      -DWORK=${CMAKE_BINARY_DIR}/install_test -DCOMPILER=${CMAKE_CXX_COMPILER}
+      -P ${PROJECT_SOURCE_DIR}/tests/install/run.cmake)
+  set_tests_properties(Install.AProgramElsewhereBuildsAgainstThePackage PROPERTIES LABELS slow TIMEOUT 600)
+endif()
