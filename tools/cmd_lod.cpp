@@ -176,7 +176,7 @@ std::string numberOf(const Json& json) {
 
 std::string tableOf(const Json& report, const std::string& unit) {
     Table table({"file", "step", "voxel" + unit, "control points", "triangles", "components", "genus",
-                 "volume" + (unit.empty() ? "" : " [mm^3]"), "rms to level 0" + unit, "max to level 0" + unit,
+                 unit.empty() ? "volume" : "volume [mm^3]", "rms to level 0" + unit, "max to level 0" + unit,
                  "closed"});
     for (const Json& level : report["levels"]) {
         const Json& spacing = level["spacing"];
