@@ -243,8 +243,8 @@ struct EdgeField {
 
 // In the two directions across the edge t is a lattice point: B there is (1,4,1)/6 and B' is (-1,0,1)/2.
 EdgeField edgeField(const PaddedBlock& block, int x, int y, int z, int axis) {
-    const int s = PaddedBlock::kStride[axis];
-    const int u = PaddedBlock::kStride[(axis + 1) % 3], v = PaddedBlock::kStride[(axis + 2) % 3];
+    const int s = kPaddedStride[axis];
+    const int u = kPaddedStride[(axis + 1) % 3], v = kPaddedStride[(axis + 2) % 3];
     std::array<double, 4> value, alongU, alongV;
     double scale = 0;
     for (int j = 0; j < 4; ++j) {

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "polygonize/fields.h"
 #include "polygonize/topology.h"
+#include "zoo/zoo.h"
 
 namespace isowave {
 namespace {
@@ -123,6 +124,18 @@ TEST(Polygonize, IsAManifoldForNoise) {
             const TriangleMesh mesh = polygonize(field, {.refine = refine});
             expectManifold(mesh, "noise " + std::to_string(seed) + " refine " + std::to_string(refine));
         }
+    }
+}
+
+TEST(Polygonize, IsAManifoldForEveryFieldOfTheZoo) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        const TriangleMesh mesh = polygonize(field);
+        if (mesh.triangles.empty()) {
+            EXPECT_EQ(field.controlPointCount(), 0) << name;
+            continue;
+        }
+        expectManifold(mesh, name);
+        EXPECT_GT(topologyOf(mesh).volume, 0) << name;
     }
 }
 
