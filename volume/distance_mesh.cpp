@@ -134,6 +134,93 @@ void fillLeaf(Leaf& leaf, const TriangleHierarchy& triangles, const LatticeLines
     }
 }
 
+// Makes and fills the leaves of the band, and returns them.
+std::vector<Leaf*> fillBand(openvdb::FloatTree& tree, const std::vector<openvdb::Vec3d>& points,
+                            const std::vector<Triangle>& meshTriangles, const LatticeLines& lines,
+                            double halfWidth, const Progress& progress) {
+    std::vector<Leaf*> leaves;
+    if (meshTriangles.empty()) return leaves;
+    const TriangleHierarchy triangles(points, meshTriangles);
+    const Blocks blocks = leavesNear(triangles, lines.box(), halfWidth, progress);
+    leaves.reserve(blocks.origins.size());
+    for (const openvdb::Coord& origin : blocks.origins) leaves.push_back(tree.touchLeaf(origin));
+    std::atomic<std::size_t> done = 0;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            fillLeaf(*leaves[i], triangles, lines, static_cast<float>(halfWidth));
+        }
+        const std::size_t now = done += range.size();
+        progress("measuring distances", double(now) / double(leaves.size()));
+    });
+    return leaves;
+}
+
+// Whether parts of the surface are buried in the solid, seen along any axis: a face seen edge-on is crossed
+// by none of the lines along it.
+bool hasBuried(const LatticeLines& alongX, const std::vector<openvdb::Vec3d>& points,
+               const std::vector<Triangle>& triangles, bool evenOdd, const Progress& progress) {
+    if (alongX.hasBuried()) return true;
+    std::vector<openvdb::Vec3d> turned = points;
+    for (int axis = 1; axis < 3; ++axis) {
+        for (openvdb::Vec3d& p : turned) p = {p.y(), p.z(), p.x()};
+        if (LatticeLines(turned, triangles, evenOdd, progress).hasBuried()) return true;
+    }
+    return false;
+}
+
+// Middles of the lattice edges from an inside point to an outside one, as triangles of one point each.
+struct SignChanges {
+    std::vector<openvdb::Vec3d> middles;
+    std::vector<Triangle> triangles;
+};
+
+SignChanges signChangesOf(const openvdb::FloatTree& tree, const std::vector<Leaf*>& leaves) {
+    SignChanges changes;
+    openvdb::tree::ValueAccessor<const openvdb::FloatTree> values(tree);
+    for (const Leaf* leaf : leaves) {
+        for (auto value = leaf->cbeginValueOn(); value; ++value) {
+            for (int axis = 0; axis < 3; ++axis) {
+                openvdb::Coord next = value.getCoord();
+                ++next[axis];
+                if (std::signbit(*value) == std::signbit(values.getValue(next))) continue;
+                const auto index = static_cast<std::uint32_t>(changes.middles.size());
+                changes.middles.push_back((value.getCoord().asVec3d() + next.asVec3d()) * 0.5);
+                changes.triangles.push_back({index, index, index});
+            }
+        }
+    }
+    return changes;
+}
+
+// Parts that overlap or touch leave surface inside the solid, and the distance to it says nothing about the
+// solid: a dent that coarser levels may open into a void. Wherever the solid's own surface passes, there is a
+// lattice edge whose signs differ: let D be an inside point's distance to the nearest such edge's middle, d
+// to the solid's surface. D - d was at most 1.2 on nine real parts (and at most 0.6 for all but 1 % of their
+// points), so d >= D - 1.2: a smaller distance is one to buried surface, and is raised to that. All others
+// stay as they are, to the bit.
+void liftFromBuried(const openvdb::FloatTree& tree, const std::vector<Leaf*>& leaves, double halfWidth,
+                    const Progress& progress) {
+    constexpr double kBeyond = 1.2;
+    const SignChanges changes = signChangesOf(tree, leaves);
+    if (changes.triangles.empty()) return;
+    const TriangleHierarchy edges(changes.middles, changes.triangles);
+    const double reach = halfWidth + kBeyond;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16), [&](const auto& range) {
+        progress.check();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (auto value = leaves[i]->beginValueOn(); value; ++value) {
+                if (*value > 0) continue;
+                const double bound =
+                    std::sqrt(edges.nearest(value.getCoord().asVec3d(), {reach * reach, -1}).squared);
+                const auto least = static_cast<float>(bound - kBeyond);
+                if (least <= -*value) continue;
+                value.setValue(-std::min(least, static_cast<float>(halfWidth)));
+                if (least >= static_cast<float>(halfWidth)) value.setValueOff();
+            }
+        }
+    });
+}
+
 }  // namespace
 
 openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
@@ -148,21 +235,12 @@ openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb
     progress("measuring distances", 0.0);
     const auto width = static_cast<float>(halfWidth);
     auto grid = openvdb::FloatGrid::create(width);
-    if (!mesh.triangles.empty()) {
-        const TriangleHierarchy triangles(points, mesh.triangles);
-        const Blocks blocks = leavesNear(triangles, lines.box(), halfWidth, progress);
-        std::vector<Leaf*> leaves;
-        leaves.reserve(blocks.origins.size());
-        for (const openvdb::Coord& origin : blocks.origins) leaves.push_back(grid->tree().touchLeaf(origin));
-        std::atomic<std::size_t> done = 0;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i)
-                fillLeaf(*leaves[i], triangles, lines, width);
-            const std::size_t now = done += range.size();
-            progress("measuring distances", double(now) / double(leaves.size()));
-        });
-    }
+    const std::vector<Leaf*> leaves =
+        fillBand(grid->tree(), points, mesh.triangles, lines, halfWidth, progress);
     signTiles(grid->tree(), lines.box(), width, [&](const openvdb::Coord& p) { return lines.inside(p); });
+    if (hasBuried(lines, points, mesh.triangles, evenOdd, progress)) {
+        liftFromBuried(grid->tree(), leaves, halfWidth, progress);
+    }
     openvdb::tools::prune(grid->tree());
     grid->setTransform(transform.copy());
     grid->setGridClass(openvdb::GRID_LEVEL_SET);

@@ -102,22 +102,27 @@ struct LatticeLines::Rasteriser {
 
 namespace {
 
+struct LineReport {
+    bool closed;  // it ends outside
+    bool buried;  // it crosses the mesh between two inside points
+};
+
 // Sorts a line's crossings and turns them into toggles, in place. A crossing is 2 x + (leaving ? 1 : 0).
-// Returns whether the line ends outside.
-bool toToggles(std::int32_t* first, std::int32_t* last, std::int32_t middle, bool evenOdd) {
+LineReport toToggles(std::int32_t* first, std::int32_t* last, std::int32_t middle, bool evenOdd) {
     std::sort(first, last);
     std::int32_t* out = first;
     int winding = 0;
-    bool inside = false;
+    bool inside = false, buried = false;
     for (const std::int32_t* in = first; in != last;) {
         const std::int32_t x = *in >> 1;
         for (; in != last && (*in >> 1) == x; ++in) winding += evenOdd || !(*in & 1) ? 1 : -1;
         const bool now = evenOdd ? winding % 2 != 0 : winding != 0;
         if (now != inside) *out++ = x + middle;  // invariant: out < in
+        buried = buried || (now && inside);
         inside = now;
     }
     std::fill(out, last, std::numeric_limits<std::int32_t>::max());
-    return !inside;
+    return {!inside, buried};
 }
 
 }  // namespace
@@ -173,11 +178,14 @@ LatticeLines::LatticeLines(const std::vector<openvdb::Vec3d>& points, const std:
     start_.pop_back();
 
     std::atomic<std::size_t> open = 0;
+    std::atomic<bool> buried = false;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lines, 1024), [&](const auto& range) {
         progress.check();
         for (std::size_t l = range.begin(); l != range.end(); ++l) {
-            open += !toToggles(toggles_.data() + start_[l], toggles_.data() + start_[l + 1],
-                               raster.middle.x(), evenOdd);
+            const LineReport line = toToggles(toggles_.data() + start_[l], toggles_.data() + start_[l + 1],
+                                              raster.middle.x(), evenOdd);
+            open += !line.closed;
+            if (line.buried) buried = true;
         }
     });
     if (open > 0) {
@@ -186,6 +194,7 @@ LatticeLines::LatticeLines(const std::vector<openvdb::Vec3d>& points, const std:
                                      "repair it first",
                                      open.load(), lines));
     }
+    hasBuried_ = buried;
 }
 
 std::pair<const std::int32_t*, const std::int32_t*> LatticeLines::togglesBeyond(

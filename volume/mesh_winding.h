@@ -37,6 +37,10 @@ class LatticeLines {
     // Bit i: lattice point low + (i, 0, 0) is inside; i = 0..7.
     unsigned inside8(const openvdb::Coord& low) const;
 
+    // Whether some line crosses the mesh between two lattice points that are inside: parts overlap or touch
+    // there, or a slit is too thin for the lattice.
+    bool hasBuried() const { return hasBuried_; }
+
     // Lattice points outside this box are outside the mesh.
     const openvdb::CoordBBox& box() const { return box_; }
 
@@ -50,6 +54,7 @@ class LatticeLines {
                std::size_t(y - box_.min().y());
     }
 
+    bool hasBuried_ = false;
     openvdb::CoordBBox box_;  // empty: nothing is inside
     // Line l: inside on [t0, t1), [t2, t3), ... where t = toggles_[start_[l]], ...; the rest of the line's
     // entries are INT32_MAX.

@@ -90,17 +90,17 @@ TEST(DistanceFromMesh, HoldsABigSolidInTiles) {
 }
 
 TEST(DistanceFromMesh, KeepsVoidsAndSolidsInTilesApart) {
-    // Walls 40 apart: between them, every lattice point far from a wall lies in a tile.
+    // Walls 24 apart: between them, every lattice point far from a wall lies in a tile.
     TriangleMesh mesh;
     for (int shell = 0; shell < 4; ++shell) {
-        const double low = 0.4 + 40 * shell, high = 320.4 - 40 * shell;
+        const double low = 0.4 + 24 * shell, high = 192.4 - 24 * shell;
         const TriangleMesh wall = box({low, low, low}, {high, high, high});
         mesh = together(mesh, shell % 2 == 0 ? wall : reversed(wall));
     }
     const auto grid = distanceFromMesh(mesh, *kUnit, 3.0);
-    for (int x = -20; x < 340; x += 3) {
-        const Coord p(x, 161, 159);
-        const int depth = std::min({std::max(0, (x + 39) / 40), std::max(0, (360 - x) / 40), 4});
+    for (int x = -20; x < 212; x += 3) {
+        const Coord p(x, 97, 95);
+        const int depth = std::min({std::max(0, (x + 23) / 24), std::max(0, (216 - x) / 24), 4});
         const float value = grid->tree().getValue(p);
         EXPECT_EQ(std::signbit(value), depth % 2 == 1) << x << " depth " << depth << " value " << value;
     }
@@ -117,6 +117,30 @@ TEST(DistanceFromMesh, CountsCrossingsWhereOrientationCannotBeTrusted) {
         together(sphere(15.3, 2), sphere(8.7, 2));  // the void's wall faces the wrong way
     EXPECT_LT(distanceFromMesh(mesh, *kUnit, 3.0, false)->tree().getValue(Coord(0)), 0);
     EXPECT_GT(distanceFromMesh(mesh, *kUnit, 3.0, true)->tree().getValue(Coord(0)), 0);
+}
+
+TEST(DistanceFromMesh, LeavesNoDentWherePartsOverlapOrTouch) {
+    const TriangleMesh whole = box({0.4, 0.4, 0.4}, {20.4, 40.4, 20.4});
+    const auto reference = distanceFromMesh(whole, *kUnit, 4.0);
+    const TriangleMesh lower = box({0.4, 0.4, 0.4}, {20.4, 23.4, 20.4});
+    for (const double start : {23.4, 17.4}) {  // the upper part touches the lower one, or overlaps it
+        const TriangleMesh parts = together(lower, box({0.4, start, 0.4}, {20.4, 40.4, 20.4}));
+        for (const bool evenOdd : {false, true}) {
+            if (evenOdd && start < 23) continue;  // the overlap would be a void
+            const auto grid = distanceFromMesh(parts, *kUnit, 4.0, evenOdd);
+            EXPECT_EQ(grid->tree().getValue(Coord(10, 23, 10)), -4.0f) << "0.4 from the buried face";
+            for (auto point = openvdb::CoordBBox(Coord(-4), Coord(25, 45, 25)).begin(); point; ++point) {
+                const float expected = reference->tree().getValue(*point),
+                            found = grid->tree().getValue(*point);
+                if (expected > 0) {
+                    ASSERT_EQ(found, expected) << *point;
+                } else {
+                    ASSERT_GE(found, expected) << *point;  // never farther than the truth
+                    ASSERT_LE(found, std::min(expected + 2.3f, -0x1p-20f)) << *point;
+                }
+            }
+        }
+    }
 }
 
 TEST(DistanceFromMesh, CarriesAnyUniformTransform) {

@@ -78,6 +78,15 @@ TEST(LatticeLines, TakePartsThatOverlapAsOneSolid) {
     }
 }
 
+TEST(LatticeLines, SayWhetherTheyCrossSurfaceInsideTheSolid) {
+    const TriangleMesh one = box({0.5, 0.5, 0.5}, {6.5, 6.5, 6.5});
+    EXPECT_FALSE(linesOf(one).hasBuried());
+    EXPECT_TRUE(linesOf(together(one, box({3.5, 3.5, 3.5}, {9.5, 9.5, 9.5}))).hasBuried());
+    EXPECT_TRUE(linesOf(together(one, box({6.5, 0.5, 0.5}, {9.5, 6.5, 6.5}))).hasBuried());
+    EXPECT_FALSE(linesOf(together(one, box({8.5, 0.5, 0.5}, {9.5, 6.5, 6.5}))).hasBuried());
+    EXPECT_FALSE(linesOf(together(one, box({0.5, 6.5, 0.5}, {6.5, 9.5, 6.5}))).hasBuried()) << "seen edge-on";
+}
+
 TEST(LatticeLines, TakeAMeshTurnedInsideOutAsTheSameSolid) {
     const LatticeLines lines = linesOf(reversed(box({0.5, 0.5, 0.5}, {6.5, 6.5, 6.5})));
     EXPECT_TRUE(lines.inside(Coord(3)));
