@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/error.h"
 #include "volume/padded_leaf.h"
 #include "volume/tiles.h"
 
@@ -370,6 +371,8 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
 BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
                          FitReport* report, const Progress& progress) {
     assert(0 < options.band && options.band <= options.halfWidth);
+    if (distance.background() < 0)
+        throw InputError(distance.getName(), "everything far away is inside; a solid must be finite");
     progress("fitting", 0);
     const openvdb::FloatTree& d = distance.constTree();
     Mask known = knownAround(nodesNear(d, static_cast<float>(options.band)));

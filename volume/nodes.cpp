@@ -71,6 +71,8 @@ NodeCollection collect(const openvdb::CoordBBox& box, const MakeInside& makeInsi
 }  // namespace
 
 NodeCollection nodesFromSigns(const openvdb::BoolGrid& inside) {
+    if (inside.background())
+        throw InputError(inside.getName(), "everything far away is inside; a solid must be finite");
     // Every inside region lies in an active or inactive tile or leaf of value true.
     openvdb::CoordBBox box;
     for (auto it = inside.constTree().cbeginValueAll(); it; ++it)

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "volume/distance.h"
 #include "zoo/zoo.h"
 
@@ -82,6 +83,11 @@ TEST(Fit, AnEmptySolidIsAnEmptyField) {
     const BSplineField field = zoo::binaryField(zoo::emptySolids()[0]);
     EXPECT_EQ(field.controlPointCount(), 0);
     EXPECT_NEAR(evaluate(field, Vec3d(1, 2, 3)), 1.0, 1e-15);
+}
+
+TEST(Fit, RefusesASolidThatIsNotFinite) {
+    EXPECT_THROW(fitDistance(openvdb::FloatGrid(-4.0f)), InputError);
+    EXPECT_THROW(nodesFromSigns(openvdb::BoolGrid(true)), InputError);
 }
 
 TEST(Fit, TheDeepInsideIsMinusKAndCostsNothing) {
