@@ -108,11 +108,11 @@ NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance) {
 }
 
 // Swaps inside and outside.
-void negate(openvdb::FloatGrid& distance) {
-    for (auto value = distance.beginValueAll(); value; ++value) value.setValue(-*value);
+void negate(openvdb::FloatGrid& levelSet) {
+    for (auto value = levelSet.beginValueAll(); value; ++value) value.setValue(-*value);
     // Background nodes that hold no tile of their own keep the old sign unless the root's background turns
     // too.
-    distance.tree().root().setBackground(-distance.background(), /*updateChildNodes=*/false);
+    levelSet.tree().root().setBackground(-levelSet.background(), /*updateChildNodes=*/false);
 }
 
 const char* nameOf(FitMethod method) { return method == FitMethod::binary ? "binary" : "distance"; }
@@ -421,6 +421,13 @@ Solid loadLevelSetSolid(const fs::path& path, const Settings& settings, Console&
                          "holds the control points of a field (isowave field), not a level set; give the "
                          "pyramid or the input that it was made from");
     const double iso = settings.iso.value_or(0.0);
+    if ((levelSet->background() > iso) == settings.invert)
+        throw InputError(
+            name, fmt::format("everything far away would be inside (background {:g}, iso {:g}); a solid "
+                              "must be finite; {}",
+                              levelSet->background(), iso,
+                              settings.invert ? "leave --invert out" : "give another --iso, or --invert"));
+    if (settings.invert) negate(*levelSet);
     const Fitting fitting = fittingOf(settings, FitMethod::distance);
     const auto box = levelSet->evalActiveVoxelBoundingBox();
     const auto dim = box.empty() ? openvdb::Coord(0) : box.dim();
@@ -429,9 +436,9 @@ Solid loadLevelSetSolid(const fs::path& path, const Settings& settings, Console&
                             iso, settings.invert ? "above" : "below", nameOf(fitting.method)));
 
     const auto distance = [&] {
-        auto grid = distanceFromLevelSet(*levelSet, iso, fitting.distance.halfWidth, console.progress());
+        auto grid = distanceFromLevelSet(*levelSet, settings.invert ? -iso : iso, fitting.distance.halfWidth,
+                                         console.progress());
         levelSet.reset();
-        if (settings.invert) negate(*grid);
         return grid;
     };
     Json& json = solid.input;

@@ -64,9 +64,9 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     EXPECT_EQ(keysOf(r),
               (std::set<std::string>{"version", "input", "fit", "K", "levels", "steps", "coefficients_stored",
                                      "control_points", "seconds", "peak_memory_bytes", "threads"}));
-    EXPECT_EQ(keysOf(r["input"]),
-              (std::set<std::string>{"path", "kind", "format", "component_type", "dimensions", "spacing",
-                                     "range", "iso", "inverted", "open_border", "space"}));
+    EXPECT_EQ(keysOf(r["input"]), (std::set<std::string>{"path", "kind", "format", "component_type",
+                                                         "dimensions", "spacing", "range", "iso", "inverted",
+                                                         "open_border", "origin", "direction", "space"}));
     EXPECT_EQ(keysOf(r["fit"]), (std::set<std::string>{"method", "half_width", "band", "lattice_points",
                                                        "disagreeing", "repair_passes", "repaired"}));
     for (const Json& level : r["levels"])

@@ -73,8 +73,8 @@ struct Result {
 };
 
 struct RunOptions {
-    std::optional<rlim_t> largestFile = std::nullopt;    // bytes; a write beyond fails, as on a full disk
-    std::function<bool()> interruptWhen = {};  // SIGINT as soon as this is true
+    std::optional<rlim_t> largestFile = std::nullopt;  // bytes; a write beyond fails, as on a full disk
+    std::function<bool()> interruptWhen = {};          // SIGINT as soon as this is true
     std::chrono::seconds giveUpAfter{240};
 };
 
