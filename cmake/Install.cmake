@@ -15,11 +15,15 @@ get_property(targets GLOBAL PROPERTY ISOWAVE_MODULES)
 install(TARGETS isowave ${targets} EXPORT isowaveTargets)
 install(EXPORT isowaveTargets NAMESPACE isowave:: DESTINATION ${package_dir})
 
-# Headers keep their folders: #include "wavelets/interval.h" with include/isowave on the path.
+# Headers keep their folders: #include "wavelets/interval.h" with include/isowave on the path. Those of
+# isowave::measure come only with the library that they promise.
+if(NOT ISOWAVE_MEASURE)
+  set(left_out PATTERN "measure*.h" EXCLUDE)
+endif()
 foreach(module ${umbrella} curves2d subdivision)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${module})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isowave
-            FILES_MATCHING PATTERN "*.h")
+            FILES_MATCHING PATTERN "*.h" ${left_out})
   endif()
 endforeach()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -34,7 +38,7 @@ install(FILES ${CMAKE_BINARY_DIR}/isowaveConfig.cmake ${CMAKE_BINARY_DIR}/isowav
 if(ISOWAVE_TESTS)
   add_test(NAME Install.AProgramElsewhereBuildsAgainstThePackage
     COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${PROJECT_SOURCE_DIR}
-      -DWORK=${CMAKE_BINARY_DIR}/install_test -DCOMPILER=${CMAKE_CXX_COMPILER}
+      -DWORK=${CMAKE_BINARY_DIR}/install_test -DCOMPILER=${CMAKE_CXX_COMPILER} -DMEASURE=${ISOWAVE_MEASURE}
       -P ${PROJECT_SOURCE_DIR}/tests/install/run.cmake)
   set_tests_properties(Install.AProgramElsewhereBuildsAgainstThePackage PROPERTIES LABELS slow TIMEOUT 600)
 endif()
