@@ -10,11 +10,20 @@
 
 namespace isowave {
 
-AtomicFile::AtomicFile(std::filesystem::path place)
-    : place_(std::move(place)), temporary_(place_.string() + ".part-" + std::to_string(::getpid())) {
-    errno = 0;
-    if (std::filesystem::is_directory(place_))
+AtomicFile::AtomicFile(std::filesystem::path place) : place_(std::move(place)) {
+    std::error_code error;
+    if (std::filesystem::is_symlink(place_, error)) {
+        // Through the link: replacing the link itself would leave its target as it was.
+        const auto target = std::filesystem::weakly_canonical(place_, error);
+        if (!error) place_ = target;
+    }
+    const auto status = std::filesystem::status(place_, error);
+    if (std::filesystem::is_directory(status))
         throw OperationError(place_.string(), "is a folder; give the name of a file to write");
+    direct_ = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+    temporary_ = place_;
+    if (!direct_) temporary_ += ".part-" + std::to_string(::getpid());
+    errno = 0;
     stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_)
         throw OperationError(place_.string(), std::string("cannot write here (") + std::strerror(errno) +
@@ -26,6 +35,7 @@ AtomicFile::~AtomicFile() {
     if (committed_) return;
     stream_.exceptions(std::ios::goodbit);
     stream_.close();
+    if (direct_) return;
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
 }
@@ -39,6 +49,8 @@ void AtomicFile::commit() {
         throw OperationError(place_.string(), std::string("writing failed (") + std::strerror(errno) +
                                                   "); is the disk full? Nothing was left behind");
     }
+    committed_ = direct_;
+    if (direct_) return;
     // Data on the disk before the name: a power cut must not leave an empty file under the good name.
     if (const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC); fd >= 0) {
         const int failed = ::fsync(fd);

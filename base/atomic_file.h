@@ -11,7 +11,8 @@ namespace isowave {
 // Without commit() (an exception, a cancelled job) the temporary file is removed and the place is untouched.
 class AtomicFile {
   public:
-    // Opens PLACE.part-PID for writing. Throws OperationError when that fails (folder missing or unwritable).
+    // Opens PLACE.part-PID for writing; links are followed. Throws OperationError when that fails (folder missing or
+    // unwritable). Where PLACE is a device or a pipe (/dev/null, /dev/stdout) it is written to directly.
     explicit AtomicFile(std::filesystem::path place);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -29,6 +30,7 @@ class AtomicFile {
   private:
     std::filesystem::path place_, temporary_;
     std::ofstream stream_;
+    bool direct_ = false;  // place_ is no regular file: nothing to rename
     bool committed_ = false;
 };
 

@@ -10,8 +10,7 @@
 //            there. This looks at the face's own four signs, so the two cells that share it agree.
 //   loops    A vertex lies on two faces of the cell, entered on one and left on the other: segments close up
 //            into loops, directed so that they run counter-clockwise seen from outside the solid.
-//   filling  A loop is triangulated without any diagonal that has both ends on one face, the shortest
-//   diagonals
+//   filling  A loop is triangulated without any diagonal that has both ends on one face, the shortest diagonals
 //            first. All loops of all 256 cases allow it (they have 3 to 7 vertices): no case needs a vertex
 //            in the middle of a cell. Complementing the signs shows the same for the other rule, joining the
 //            inside.
@@ -19,11 +18,9 @@
 // Why the mesh of any sign pattern is a closed, oriented 2-manifold:
 // (1) A segment lies on one face, is used by the two cells of that face, and they run along it in opposite
 //     directions. No other two vertices of a face are joined: diagonals never lie in a face.
-// (2) A diagonal joins vertices of one loop of one cell that share no face, so no other cell can have it;
-// inside
+// (2) A diagonal joins vertices of one loop of one cell that share no face, so no other cell can have it; inside
 //     the loop's triangulation it has two triangles.
-// (3) Around a lattice edge lie four cells and four faces; each cell has one loop through the edge's vertex,
-// so
+// (3) Around a lattice edge lie four cells and four faces; each cell has one loop through the edge's vertex, so
 //     the triangles at the vertex are four sectors joined at four segments: one fan.
 //
 // Asymptotic deciders (Nielson and Hamann 1991; Chernyaev's MC33 1995) choose between separated and joined by

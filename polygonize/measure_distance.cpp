@@ -29,8 +29,7 @@ constexpr std::size_t kChunk = 1024;  // triangles or points handed to a thread 
 
 Point3 toPoint3(const Point& p) { return {p[0], p[1], p[2]}; }
 
-// ---- the nearest point of a triangle
-// ------------------------------------------------------------------------
+// ---- the nearest point of a triangle --------------------------------------------------------------------
 
 Point3 nearestOnSegment(const Point3& q, const Point3& a, const Point3& b) {
     const Vector3 along = b - a;
@@ -99,8 +98,7 @@ using Piece = std::array<Sample, 3>;
 
 // The largest distance of a point of the triangle pqr to its nearest corner.
 //   no obtuse angle: the circumcentre is in the triangle, R = |a||b||c| / (4 area)
-//   obtuse at C:     the farthest point lies on the long side AB, where the bisector of CA or of CB cuts it,
-//   at
+//   obtuse at C:     the farthest point lies on the long side AB, where the bisector of CA or of CB cuts it, at
 //                    |b| / (2 cos A) from A or |a| / (2 cos B) from B
 // Never more than c/sqrt(3), c the longest side: that is its value for the equilateral triangle.
 double coveringRadius(const Point3& p, const Point3& q, const Point3& r) {

@@ -10,29 +10,27 @@ namespace isowave {
 struct PolygonizeOptions {
     int refine = 1;               // samples of a node along each axis: 1, 2 or 4 (memory grows with its cube)
     double rootTolerance = 1e-6;  // of a sample edge: how close a vertex lies to a sign change of the spline
-    double rootMargin =
-        1e-3;  // of a sample edge: vertices stay this far from lattice points (STL is float32)
+    double rootMargin = 1e-3;     // of a sample edge: vertices stay this far from lattice points (STL is float32)
 };
 
 // The zero set of the spline itself (not of a linear interpolation of samples): lattice values by (1,4,1)/6
 // on each axis, one vertex on each lattice edge whose ends differ in sign, placed on a root of the cubic
 // along it. Value >= 0 counts as outside. Normals are the spline's gradient in world coordinates; triangles
 // are counter-clockwise seen from outside also when the transform mirrors. Vertices and triangles come in an
-// order that does not depend on the number of threads. (1) The mesh is closed, oriented and 2-manifold for
-// any values in the grid (polygonize/cell_table.h says why),
+// order that does not depend on the number of threads.
+// (1) The mesh is closed, oriented and 2-manifold for any values in the grid (polygonize/cell_table.h says why),
 //     also for one that is no field at all: control points outside I need not even keep their sign.
-// (2) Within rootTolerance of a vertex along its edge the spline changes sign, except where rootMargin moved
-// it. (3) Every normal has length 1 to float32. An empty field gives an empty mesh. Throws OperationError
-// past 2^31 - 1 vertices or triangles, InputError for a control point that is not finite and for a transform
-// that is not affine or not invertible. REQUIRES: refine is 1, 2 or 4; 0 <= rootMargin < 0.5; rootTolerance >
-// 0.
+// (2) Within rootTolerance of a vertex along its edge the spline changes sign, except where rootMargin moved it.
+// (3) Every normal has length 1 to float32.
+// An empty field gives an empty mesh. Throws OperationError past 2^31 - 1 vertices or triangles, InputError for a
+// control point that is not finite and for a transform that is not affine or not invertible.
+// REQUIRES: refine is 1, 2 or 4; 0 <= rootMargin < 0.5; rootTolerance > 0.
 TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& options = {},
                         const Progress& progress = {});
 
 // The same function on a lattice twice as fine on each axis, by knot insertion: evaluate(refineField(f), 2x)
-// = evaluate(f, x) to float32 rounding of the new control points, and world positions stay. On each axis,
-// with c coarse and coarse j at fine 2j:  fine 2i = (c[i-1] + 6 c[i] + c[i+1]) / 8,
-//                                                       fine 2i+1 = (c[i] + c[i+1]) / 2.
+// = evaluate(f, x) to float32 rounding of the new control points, and world positions stay. On each axis, with c
+// coarse and coarse j at fine 2j:   fine 2i = (c[i-1] + 6 c[i] + c[i+1]) / 8,   fine 2i+1 = (c[i] + c[i+1]) / 2.
 // I becomes the control points that depend on one in I (or are no longer constant); K stays. Signs of the
 // shape are those of F at the fine lattice points, there being no input between the coarse ones.
 BSplineField refineField(const BSplineField& field, const Progress& progress = {});

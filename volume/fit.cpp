@@ -35,8 +35,7 @@ using MaskLeaf = Mask::LeafNodeType;
 template <class Tree>
 using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
 
-// ---- known
-// ----------------------------------------------------------------------------------------------------------
+// ---- known ----------------------------------------------------------------------------------------------
 
 // The lattice points that are corners of a kept node: voxel i is one when a node of i - {0,1}^3 is kept.
 Mask cornersOf(const Mask& nodes) {
@@ -76,8 +75,7 @@ Mask knownAround(const Mask& nodes) {
     return known;
 }
 
-// ---- origin
-// ---------------------------------------------------------------------------------------------------------
+// ---- origin ---------------------------------------------------------------------------------------------
 
 // Halving a domain that lies at -1 and above ends at one node, control points -1 .. 2. One that straddles the
 // origin ends at -2 .. 2, two nodes, for ever. So the lattice is shifted, by whole leaves, until nothing lies
@@ -109,8 +107,7 @@ openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& t
     return result;
 }
 
-// ---- shape
-// ----------------------------------------------------------------------------------------------------------
+// ---- shape ----------------------------------------------------------------------------------------------
 
 // makeInside() returns Coord (of the field) -> bool for one thread; source: a tree, in its own coordinates,
 // whose root regions cover every inside region.
@@ -161,8 +158,7 @@ BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transfor
     return field;
 }
 
-// ---- smooth
-// ---------------------------------------------------------------------------------------------------------
+// ---- smooth ---------------------------------------------------------------------------------------------
 
 // One pass of the discrete Laplacian filter on I: c <- (c + mean of the six neighbours)/2, all at once.
 void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const openvdb::FloatTree& tree) {
@@ -181,8 +177,7 @@ void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const
     leaves.swapLeafBuffer(1);
 }
 
-// ---- repair
-// ---------------------------------------------------------------------------------------------------------
+// ---- repair ---------------------------------------------------------------------------------------------
 
 // While a lattice point of I has s F < floor: its control point c <- c + target s - F. A change by delta
 // moves F there by (2/3)^3 delta. Leaves whose neighbourhood did not change in the last pass are skipped.
@@ -308,8 +303,7 @@ FitReport finish(BSplineField& field, double floor, double target, FitReport rep
     return report;
 }
 
-// ---- distances
-// --------------------------------------------------------------------------------------------------------
+// ---- distances ------------------------------------------------------------------------------------------
 
 // Nodes with a corner nearer than `band`, and nodes whose corner signs differ.
 Mask nodesNear(const openvdb::FloatTree& distance, float band) {

@@ -14,11 +14,15 @@ namespace isowave {
 // change.
 
 struct FitReport {
-    std::int64_t latticePoints = 0;  // lattice points of I whose sign was compared with the input's
-    std::int64_t disagreeing = 0;    // of these, how many disagree in the end (0 unless repair gave up)
-    int filterPasses = 0;            // Laplacian passes (fitBinary)
-    int repairPasses = 0;            // passes until no lattice point needed repair
-    std::int64_t repaired = 0;       // control points changed by the repair, counted once a pass
+    // Lattice points whose sign was compared with the input's: I dilated by one, all those where a known control
+    // point has a say.
+    std::int64_t latticePoints = 0;
+    // Of these, how many disagree in the end. The repair works on those of I and leaves none there unless it gave up;
+    // those beside I keep their sign because nothing crosses zero so far from the surface.
+    std::int64_t disagreeing = 0;
+    int filterPasses = 0;       // Laplacian passes (fitBinary)
+    int repairPasses = 0;       // passes until no lattice point needed repair
+    std::int64_t repaired = 0;  // control points changed by the repair, counted once a pass
 };
 
 struct BinaryFitOptions {

@@ -2,9 +2,8 @@
 //
 //   merge       points are distinct
 //   drop        triangles have three distinct corners and are listed once
-//   orient      across every edge with two triangles, both agree on outside, as far as the surface is
-//   orientable fill        every edge has an even number of triangles: the mesh is closed, solid and void are
-//   well-defined
+//   orient      across every edge with two triangles, both agree on outside, as far as the surface is orientable
+//   fill        every edge has an even number of triangles: the mesh is closed, solid and void are well-defined
 //
 // Closedness is taken modulo 2. The edges with an odd number of triangles form a graph in which every vertex
 // has an even degree (each triangle at a vertex brings two of its edges), so they always fall apart into

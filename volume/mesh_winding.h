@@ -20,10 +20,9 @@ namespace isowave {
 // meets exactly one of them: a closed mesh is entered as often as it is left. The x of a crossing is an exact
 // fraction, and the first lattice point at or beyond it is all that is kept.
 //
-// (1) inside(p) depends on the rounded mesh and p alone: not on threads, order of triangles or neighbouring
-// points. (2) a lattice point on the surface is inside or outside; boxes with corners on lattice points hold
-// their low faces
-//     and not their high ones.
+// (1) inside(p) depends on the rounded mesh and p alone: not on threads, order of triangles or neighbours.
+// (2) A lattice point on the surface is inside or outside; boxes with corners on lattice points hold their low
+//     faces and not their high ones.
 class LatticeLines {
   public:
     // points: index space. evenOdd: inside where the number of crossings is odd, else where the winding

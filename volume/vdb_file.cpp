@@ -112,7 +112,11 @@ struct Preamble {
     std::string uuid;
     std::optional<std::int64_t> writtenLength;  // isowave:file_bytes
 
-    bool ours() const { return writtenLength || (uuid.size() == kUuidLength && uuid[14] == '8'); }
+    // A file that another program wrote again from what it read here keeps our metadata under a UUID of its own:
+    // it is that program's file, unless its length is still the one that we wrote.
+    bool ours() const {
+        return (uuid.size() == kUuidLength && uuid[14] == '8') || (writtenLength && *writtenLength == length);
+    }
 };
 
 // Where the 8 bytes of isowave:file_bytes lie in `text`, a MetaMap as written; npos if it is not there.

@@ -2,8 +2,7 @@
 // nothing.
 //
 // Three promises beyond openvdb::io::File:
-// (1) The bytes are a function of the grids and the metadata alone. OpenVDB puts a random UUID into each
-// header;
+// (1) The bytes are a function of the grids and the metadata alone. OpenVDB puts a random UUID into each header;
 //     here it is a hash of the rest of the file.
 // (2) Every truncation is found, and every change of a byte in a file that writeVdb() wrote.
 // (3) The values come back to the bit, inactive ones too.

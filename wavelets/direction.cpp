@@ -137,8 +137,7 @@ struct CoarseColumn {
     std::vector<std::unique_ptr<BoolLeaf>> shape;
 };
 
-// ---- analysis of one column
-// -------------------------------------------------------------------------------------------
+// ---- analysis of one column -----------------------------------------------------------------------------
 
 // One line: its intervals analysed, their coarse control points and details filed.
 void analyseLine(const SignedColumn& fine, const FieldColumns::Column& values, int axis, int start,
@@ -194,8 +193,7 @@ CoarseColumn analyseColumn(const ShapeColumns::Column& column, const FieldColumn
     return out;
 }
 
-// ---- synthesis of one column
-// ------------------------------------------------------------------------------------------
+// ---- synthesis of one column ----------------------------------------------------------------------------
 
 double valueOrRefuse(const FieldColumns::Column* column, std::int64_t position, int start, int stride,
                      const char* what) {
@@ -251,8 +249,7 @@ std::vector<std::unique_ptr<FloatLeaf>> synthesiseColumn(const ShapeColumns::Col
     return out;
 }
 
-// ---- columns in parallel
-// ----------------------------------------------------------------------------------------------
+// ---- columns in parallel --------------------------------------------------------------------------------
 
 template <class Work>
 void forEachColumn(std::size_t count, const Progress& progress, const Work& work) {

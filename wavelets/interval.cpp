@@ -7,12 +7,10 @@
 #include "wavelets/interval_matrices.h"
 
 // Two paths that compute the same thing:
-//   short intervals (n <= kShort)  one small dense matrix for each n, applied column by column: what a
-//   compiler
-//                                  vectorises, and most intervals of a real field have 4 to 12 points
-//   long ones                      banded LU of T = interleaved [P|Q], no pivoting: |L| <= 13.8, |U| <= 1.8,
-//   pivots
-//                                  >= 0.07 for every n (seen: IntervalMatrices.TheBandedFactorsStayBounded)
+//   short  n <= kShort: one small dense matrix for each n, applied column by column. That is what a compiler
+//          vectorises, and most intervals of a real field have 4 to 12 points
+//   long   banded LU of T = interleaved [P|Q] without pivoting: |L| <= 13.8, |U| <= 1.8, pivots >= 0.07 for
+//          every n (IntervalMatrices.TheBandedFactorsStayBounded)
 // Rejected here: analysis by the two Gram systems E(7), E(8). Two banded solves instead of one.
 
 namespace isowave::wavelets {
@@ -20,8 +18,7 @@ namespace {
 
 constexpr int kShort = 16;
 
-// ---- short: dense maps
-// ------------------------------------------------------------------------------------------
+// ---- short: dense maps ----------------------------------------------------------------------------------
 
 // Column-major (2n+3) x (2n+5).
 struct DenseMap {
@@ -67,8 +64,7 @@ const ShortMaps& shortMaps() {
     return maps;
 }
 
-// ---- long: banded factors
-// ---------------------------------------------------------------------------------------
+// ---- long: banded factors -------------------------------------------------------------------------------
 
 // Row i of T = L U: L(i, i-5..i-1), 1/U(i,i), U(i, i+1..i+5); and row i of T itself, T(i, i-5..i+5).
 struct BandRow {

@@ -2,13 +2,13 @@
 // and by the tests. Nothing here runs on a hot path.
 //
 // Notation: a cut-off domain of m unit intervals carries m + 3 uniform cubic B-splines, all knots simple.
-//   P  (2n+3) x (n+3)  two-scale refinement, columns (1,4,6,4,1)/8 cut off at the ends; P's row i is fine
-//   position
-//                      i - 1, its column j coarse position j - 1 (so column j is centred on row 2j - 1)
-//   I  (m+3) x (m+3)   inner products of the B-splines on the domain; inner rows
-//   (1,120,1191,2416,1191,120,1)/5040 Q  (2n+3) x n      minimal-support basis of the L2-orthogonal
-//   complement: PᵀIQ = 0 T  (2n+3) x (2n+3) the columns of [P|Q] interleaved c0 c1 d0 c2 d1 .. d(n-1) c(n+1)
-//   c(n+2): bandwidth 5 + 5
+//   P  (2n+3) x (n+3)   two-scale refinement, columns (1,4,6,4,1)/8 cut off at the ends; row i of P is fine
+//                       position i - 1, column j coarse position j - 1: column j is centred on row 2j - 1
+//   I  (m+3) x (m+3)    inner products of the B-splines on the domain; inner rows are
+//                       (1,120,1191,2416,1191,120,1)/5040
+//   Q  (2n+3) x n       minimal-support basis of the L2-orthogonal complement: PᵀIQ = 0
+//   T  (2n+3) x (2n+3)  the columns of [P|Q] interleaved, c0 c1 d0 c2 d1 .. d(n-1) c(n+1) c(n+2): five
+//                       diagonals on either side of the main one
 //
 // Support of Q's columns: fine rows 0..7, 1..9, 2..11 for k = 0, 1, 2; 2k-3..2k+7 inside, where the column is
 // the Chui-Wang wavelet 1,-124,1677,-7904,18482,-24264,.. up to scale; mirrored at the right. Each column is

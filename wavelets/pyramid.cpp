@@ -7,10 +7,17 @@ namespace {
 
 constexpr std::int64_t kOneNode = 4 * 4 * 4;  // control points of a single node
 
-// Every direction halves the domain until it has one node, so fields end at 64 control points. A guard
-// against a field that for some reason stays larger: three directions in a row, twice, without one control
-// point less.
-constexpr int kStepsWithoutProgress = 6;
+// Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so fields end
+// at 64 control points; on the way the number of control points may stay for many steps while the domain moves on. A
+// domain that straddles the origin stays at -2 .. 2 instead: then three directions in a row change nothing.
+struct Extent {
+    std::int64_t controlPoints;
+    openvdb::CoordBBox box;
+
+    explicit Extent(const BSplineField& field)
+        : controlPoints(field.controlPointCount()), box(field.controlPoints->evalActiveVoxelBoundingBox()) {}
+    bool operator==(const Extent&) const = default;
+};
 
 }  // namespace
 
@@ -20,21 +27,20 @@ Pyramid analyse(const BSplineField& field, const AnalyseOptions& options, const 
     pyramid.K = field.K;
     BSplineField current = field;
     const double whole = static_cast<double>(std::max<std::int64_t>(1, field.controlPointCount()));
-    std::int64_t left = field.controlPointCount();
+    Extent extent(field);
     double worked = 0;
-    int withoutProgress = 0;
+    int unchanged = 0;
     if (onStep) onStep(0, current);
-    while (left > kOneNode && pyramid.stepCount() < options.maxSteps &&
-           withoutProgress < kStepsWithoutProgress) {
+    while (extent.controlPoints > kOneNode && pyramid.stepCount() < options.maxSteps && unchanged < 3) {
         progress("analysing", std::min(1.0, worked / (3 * whole)));
         const int axis = pyramid.stepCount() % 3;
         DirectionResult result = analyseDirection(current, axis, progress);
         pyramid.steps.push_back({axis, current.shape, result.details});
         current = std::move(result.coarse);
-        worked += static_cast<double>(left);
-        const std::int64_t now = current.controlPointCount();
-        withoutProgress = now < left ? 0 : withoutProgress + 1;
-        left = now;
+        worked += static_cast<double>(extent.controlPoints);
+        const Extent now(current);
+        unchanged = now == extent ? unchanged + 1 : 0;
+        extent = now;
         if (onStep) onStep(pyramid.stepCount(), current);
     }
     progress("analysing", 1);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <openvdb/io/File.h>
 
-#include <fstream>
+#include <cmath>
 
 #include "base/error.h"
 #include "volume/vdb_file.h"
@@ -102,7 +102,7 @@ Pyramid readPyramid(const std::filesystem::path& path) {
     checkFormat(file, *content.metadata);
     Pyramid pyramid;
     pyramid.K = metaValue<double>(file, *content.metadata, kK);
-    if (!(pyramid.K > 0))
+    if (!(pyramid.K > 0 && std::isfinite(pyramid.K)))
         throw InputError(file, fmt::format("K is {}, expected a positive number", pyramid.K));
     const std::string axes = metaValue<std::string>(file, *content.metadata, kAxes);
     for (auto meta = content.metadata->beginMeta(); meta != content.metadata->endMeta(); ++meta)
@@ -113,6 +113,9 @@ Pyramid readPyramid(const std::filesystem::path& path) {
     pyramid.coarsest.K = pyramid.K;
     pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>("control_points");
     pyramid.coarsest.shape = parts.take<Shape>("shape");
+    if (!pyramid.coarsest.shape->tree().hasSameTopology(pyramid.coarsest.controlPoints->tree()))
+        throw InputError(file,
+                         "the pyramid's parts 'control_points' and 'shape' differ; the file is damaged");
     for (std::size_t s = 0; s < axes.size(); ++s) {
         if (axes[s] < 'x' || axes[s] > 'z')
             throw InputError(file, fmt::format("axis '{}' of step {}, expected x, y or z", axes[s], s));

@@ -21,9 +21,9 @@ inline constexpr int kPyramidFormatVersion = 1;
 // Temporary name, then rename. Throws OperationError.
 void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid);
 
-// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, parts missing,
-// parts that do not belong together (runs of known points shorter than 4, details elsewhere than the shape
-// needs them).
+// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, K not a positive number,
+// parts missing, a coarsest field and shape that differ. Whether the details of each step belong to its shape is found
+// out, with an InputError too, when that step is synthesised.
 Pyramid readPyramid(const std::filesystem::path& path);
 
 // Whether the file is a .vdb that calls itself a pyramid, of whatever version. False for anything else,

@@ -46,6 +46,29 @@ TEST(AtomicFile, RefusesAMissingFolderAndAFolder) {
     EXPECT_THROW(AtomicFile{folder}, OperationError);
 }
 
+TEST(AtomicFile, FollowsALinkAndKeepsIt) {
+    const auto folder = freshFolder("link");
+    std::ofstream(folder / "target.txt") << "old";
+    std::filesystem::create_symlink("target.txt", folder / "link.txt");
+    AtomicFile file(folder / "link.txt");
+    file.stream() << "new one";
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(std::filesystem::file_size(folder / "target.txt"), 7u);
+}
+
+TEST(AtomicFile, WritesToAPipeOrDeviceInsteadOfReplacingIt) {
+    const auto folder = freshFolder("device");
+    std::filesystem::create_symlink("/dev/null", folder / "null");
+    AtomicFile file(folder / "null");
+    file.stream() << "gone";
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "null"));
+    // A place whose very name cannot be looked at is refused like any other.
+    EXPECT_THROW(AtomicFile(folder / std::string(5000, 'x')), OperationError);
+}
+
 TEST(AtomicFile, SaysThatTheDiskIsFull) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
     const auto folder = freshFolder("full");

@@ -88,11 +88,15 @@ TEST(Ladder, EveryMeshOfEveryStepOfTheZooIsAClosedOrientedManifold) {
     EXPECT_GT(meshes, 150);
 }
 
-TEST(Ladder, OfARealCtIsClosedAtEveryStepAndEndsSimpler) {
+// Bone of a skull is 3 to 8 voxels thick here: its volume holds at level 1 and the shell breaks at level 3.
+TEST(Ladder, OfARealCtIsClosedAtEveryStep) {
     const BSplineField field = fieldOfCt();
     const auto levels = everyStep(field, "CT");
     EXPECT_EQ(levels[0].topology.components, 1);
-    EXPECT_NEAR(levels[3].topology.volume, levels[0].topology.volume, 0.015 * levels[0].topology.volume);
+    const double volume = levels[0].topology.volume;
+    EXPECT_NEAR(levels[3].topology.volume, volume, 0.015 * volume);  // seen 1.04 %
+    EXPECT_NEAR(levels[6].topology.volume, volume, 0.015 * volume);  // seen 0.01 %
+    EXPECT_GT(levels.size(), 12u);
     EXPECT_LT(stored(field), 1.25);  // seen 1.079
 }
 
@@ -148,8 +152,7 @@ TEST(Ladder, VerticesOfLevelZeroLieOnTheTrueSurface) {
         }
 }
 
-// ---- world coordinates
-// --------------------------------------------------------------------------------------------------
+// ---- world coordinates ----------------------------------------------------------------------------------
 
 TEST(Ladder, AnObliqueAnisotropicCroppedImageIsMeshedWhereItkPutsItsVoxels) {
     using Volume = itk::Image<short, 3>;

@@ -2,7 +2,7 @@
 """Slow reference of the bounded-domain cubic B-spline wavelet transform, to check the C++ against.
 
 Needs Debian's python3-numpy and python3-scipy. Dense linear algebra, one Python loop per line: use it
-on fields of up to ~100^3. What it fixes is the mathematics of seed 004 (section 4), not an interface.
+on fields of up to ~100^3. What it fixes is the mathematics of Esteve, Brunet and Vinacua (section 4), not an interface.
 
 Index conventions (one line along one axis):
   * control point i sits at lattice position i; a node is the unit interval (i, i+1) and needs control
@@ -199,7 +199,7 @@ def synthesise_axis(coarse, details, memo, fine_origin):
     return Field(*(np.moveaxis(a[cut], 0, axis) for a in (c, known, sign)), fine_origin, coarse.K)
 
 
-# --- the fit of seed 004, section 2, and helpers ----------------------------------------------------
+# --- the fit of Esteve, Brunet and Vinacua, section 2, and helpers ----------------------------------------------------
 
 def fit(inside, passes=3, K=1.0):
     """inside: bool lattice, False on the border (>= 3 deep). +-K weights, `passes` of the discrete

@@ -121,6 +121,14 @@ TEST(PyramidFile, NamesAMissingPart) {
     }
 }
 
+TEST(PyramidFile, RefusesACoarsestShapeOfAnotherField) {
+    const auto folder = freshFolder("shape");
+    Pyramid pyramid = small();
+    pyramid.coarsest.shape = Shape::create(false);
+    writePyramid(folder / "a.vdb", pyramid);
+    EXPECT_THROW(readPyramid(folder / "a.vdb"), InputError);
+}
+
 TEST(PyramidFile, PartsThatDoNotBelongTogetherAreRefusedNotCrashedOn) {
     Pyramid pyramid = small();
     pyramid.steps[0].shape = analyse(zoo::binaryField(zoo::noisySolids()[0])).steps[0].shape;

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "volume/distance.h"
+#include "volume/fit.h"
 #include "zoo/zoo.h"
 
 namespace isowave::wavelets {
@@ -48,6 +50,36 @@ TEST(Pyramid, EverySolidEndsAtOneNode) {
         const Pyramid pyramid = analyse(field);
         EXPECT_EQ(pyramid.coarsest.controlPointCount(), field.controlPointCount() == 0 ? 0 : 64) << name;
     }
+}
+
+TEST(Pyramid, ASmallSolidEndsAtOneNodeWhereverItLies) {
+    // A run of 5 control points at 6 .. 10 needs four levels before there is one less: 2 .. 6, 0 .. 4, -1 .. 3, -1 .. 2.
+    for (const int size : {1, 2, 3})
+        for (int at = 0; at < 40; ++at) {
+            const openvdb::Coord low(at, (at * 7) % 40, (at * 13) % 40);
+            const auto nodes = nodesFromFunction([](const openvdb::Coord&) { return true; },
+                                                 openvdb::CoordBBox(low, low.offsetBy(size - 1)));
+            const Pyramid pyramid = analyse(fitBinary(nodes));
+            ASSERT_EQ(pyramid.coarsest.controlPointCount(), 64) << size << " at " << low;
+        }
+}
+
+TEST(Pyramid, ADomainThatStraddlesTheOriginStopsAtTwoNodes) {
+    // Not made by a fit, which would have moved the origin.
+    BSplineField field;
+    field.controlPoints = openvdb::FloatGrid::create(1.0f);
+    field.shape = Shape::create(false);
+    for (int x = -4; x <= 4; ++x)
+        for (int y = -4; y <= 4; ++y)
+            for (int z = -4; z <= 4; ++z) {
+                const openvdb::Coord c(x, y, z);
+                field.controlPoints->tree().setValueOn(c, c == openvdb::Coord(0) ? -1.0f : 1.0f);
+                field.shape->tree().setValueOn(c, c == openvdb::Coord(0));
+            }
+    const Pyramid pyramid = analyse(field);
+    EXPECT_EQ(pyramid.coarsest.controlPointCount(), 125);
+    EXPECT_LE(pyramid.stepCount(), 12);
+    EXPECT_LT(difference(field, pyramid.field(0)), 1e-5);
 }
 
 TEST(Pyramid, AnyStepComesBackAsItWasOnTheWayDown) {
@@ -182,8 +214,7 @@ TEST(Pyramid, RefusesAShapeWhoseRunsAreTooShort) {
     EXPECT_THROW(analyseDirection(field, 0), InputError);
 }
 
-// ---- the oracle
-// -------------------------------------------------------------------------------------------------------
+// ---- the oracle -----------------------------------------------------------------------------------------
 
 BSplineField fieldFrom(const nlohmann::json& points, double K) {
     BSplineField field;
