@@ -42,6 +42,7 @@ double voxelForCount(const TriangleMesh& mesh, double voxels);
 // bounding box gets index coordinates (f, f, f), f = (3 - sqrt 5)/2 = 0.382. f is irrational and far from 0
 // and 1: with a whole number of voxels across, faces at any rational fraction of the extent keep clear of
 // lattice planes, where distances would be 0 and signs a matter of taste. REQUIRES: voxel > 0.
+// Throws InputError as linearTransform() (volume/linear_transform.h) does: voxel below 1.5e-5.
 openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double voxel);
 
 // How many lattice points distanceFromMesh will hold active, before it is run: area / voxel^2 * 2 halfWidth,
@@ -60,7 +61,7 @@ struct ImageSolid {
 };
 
 // Distances, taken in index space, to the zero set of the voxels' trilinear interpolation (sub-voxel), by
-// openvdb::tools::FastSweeping.
+// openvdb::tools::FastSweeping. Throws InputError as linearTransform() does.
 openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
                                           const Progress& progress = {});
 

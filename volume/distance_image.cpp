@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
+#include "volume/linear_transform.h"
 #include "volume/tiles.h"
 
 namespace isowave {
@@ -120,7 +121,7 @@ openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& 
     };
     const auto band = bandAround(nodes, reachOf(halfWidth));
     auto result = sweepBand(excessOn(band, nodes, [&] { return excessAt; }), nodes, halfWidth, progress);
-    result->setTransform(openvdb::math::Transform::createLinearTransform(image.indexToWorld));
+    result->setTransform(linearTransform(image.indexToWorld, "image"));
     return result;
 }
 

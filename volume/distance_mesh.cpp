@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "volume/distance.h"
+#include "volume/linear_transform.h"
 #include "volume/mesh_nearest.h"
 #include "volume/mesh_winding.h"
 #include "volume/sign_tiles.h"
@@ -258,7 +259,7 @@ openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double 
     assert(voxel > 0 && !mesh.triangles.empty());
     const double offset = (3.0 - std::sqrt(5.0)) / 2.0;
     const Bounds bounds = boundsOf(mesh);
-    auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+    auto transform = linearTransform(voxel, "mesh");
     transform->postTranslate(openvdb::Vec3d(bounds.low.data()) - openvdb::Vec3d(offset * voxel));
     return transform;
 }

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
+#include "volume/linear_transform.h"
 
 namespace isowave {
 namespace {
@@ -114,10 +115,11 @@ float nearestVoxel(const Image& image, const openvdb::Coord& c) {
 
 template <class Test>
 NodeCollection nodesWhere(const Image& image, bool openBorder, const Progress& progress, const Test& test) {
+    const auto transform = linearTransform(image.indexToWorld, "image");
     NodeCollection nodes = collect(
         boxOf(image, openBorder),
         [&] { return [&](const openvdb::Coord& c) { return test(nearestVoxel(image, c)); }; }, progress);
-    nodes.grid->setTransform(openvdb::math::Transform::createLinearTransform(image.indexToWorld));
+    nodes.grid->setTransform(transform);
     return nodes;
 }
 

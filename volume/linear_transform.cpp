@@ -1,0 +1,38 @@
+#include "volume/linear_transform.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace isowave {
+namespace {
+
+// axes: rows, one an axis of the lattice.
+void refuseTinyVoxels(const openvdb::math::Mat3d& axes, const std::string& object) {
+    // OpenVDB's own constant: ScaleMap, AffineMap::updateAcceleration. A little more, for its roundoff.
+    constexpr double smallest = 1.001 * 3e-15;
+    const double volume = std::abs(axes.det());
+    if (std::isfinite(volume) && volume > smallest) return;
+    throw InputError(
+        object,
+        fmt::format("its voxels of {:g} x {:g} x {:g} have a volume of {:g}, expected more than 3e-15; give "
+                    "all lengths in a smaller unit, such as micrometres for metres",
+                    axes.row(0).length(), axes.row(1).length(), axes.row(2).length(), volume));
+}
+
+}  // namespace
+
+openvdb::math::Transform::Ptr linearTransform(const openvdb::math::Mat4d& indexToWorld,
+                                              const std::string& object) {
+    refuseTinyVoxels(indexToWorld.getMat3(), object);
+    return openvdb::math::Transform::createLinearTransform(indexToWorld);
+}
+
+openvdb::math::Transform::Ptr linearTransform(double voxel, const std::string& object) {
+    refuseTinyVoxels(openvdb::math::Mat3d::identity() * voxel, object);
+    return openvdb::math::Transform::createLinearTransform(voxel);
+}
+
+}  // namespace isowave
