@@ -367,7 +367,7 @@ Solid loadMeshSolid(const fs::path& path, const Settings& settings, Console& con
     {
         const StageClock::Scope scope(clock, "read");
         loaded = loadMesh(path, console.progress());
-        loaded.mesh = repairMesh(std::move(loaded.mesh), name, &repair);
+        loaded.mesh = repairMesh(std::move(loaded.mesh), name, &repair, {}, console.progress());
     }
     const TriangleMesh& mesh = loaded.mesh;
     for (const std::string& note : repair.notes) console.say(note);

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "volume/mesh_input.h"
 
 namespace isowave {
@@ -25,18 +26,36 @@ namespace {
 
 using Index = std::uint32_t;
 
+// Asks whether to stop at one of this many steps of a loop; asking at each would cost more than the step.
+constexpr std::size_t kStepsBetweenChecks = std::size_t(1) << 16;
+
+void checkNowAndThen(const Progress& progress, std::size_t step) {
+    if (step % kStepsBetweenChecks == 0) progress.check();
+}
+
+// std::sort, the slow part of most passes, left by Cancelled within a moment of the stop being asked for.
+template <class T, class Less>
+void sortUnlessStopped(std::vector<T>& values, const Progress& progress, const Less& less) {
+    std::size_t compared = 0;
+    std::sort(values.begin(), values.end(), [&](const T& a, const T& b) {
+        checkNowAndThen(progress, ++compared);
+        return less(a, b);
+    });
+}
+
 // ---- merge, drop ----
 
 // Equal points become one, unused ones go; the order of first use stays.
-void mergePoints(TriangleMesh& mesh, MeshRepairReport& report) {
+void mergePoints(TriangleMesh& mesh, MeshRepairReport& report, const Progress& progress) {
     std::vector<Point> points = std::move(mesh.points);
     for (Point& p : points) {
         for (double& x : p) x += 0.0;  // -0 is 0
     }
     std::vector<Index> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; });
+    sortUnlessStopped(order, progress, [&](Index a, Index b) {
+        return points[a] != points[b] ? points[a] < points[b] : a < b;
+    });
     std::vector<Index> first(points.size());  // of every point: the first one equal to it
     for (std::size_t i = 0; i < order.size(); ++i) {
         const bool equal = i > 0 && points[order[i]] == points[order[i - 1]];
@@ -85,7 +104,7 @@ std::pair<Triangle, bool> sortedCorners(Triangle t) {
 // Triangles on the same three points. The same way round: the first stays. Both ways, equally often: they
 // bound nothing and all go (a fin folded onto itself), except in a file that lists its whole surface twice,
 // once from either side, as renderers like it: there the first stays.
-void dropDuplicates(TriangleMesh& mesh, MeshRepairReport& report) {
+void dropDuplicates(TriangleMesh& mesh, MeshRepairReport& report, const Progress& progress) {
     struct Entry {
         Triangle corners;
         Index triangle;
@@ -97,7 +116,7 @@ void dropDuplicates(TriangleMesh& mesh, MeshRepairReport& report) {
         const auto [corners, even] = sortedCorners(mesh.triangles[t]);
         entries.push_back({corners, t, even});
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    sortUnlessStopped(entries, progress, [](const Entry& a, const Entry& b) {
         return a.corners != b.corners ? a.corners < b.corners : a.triangle < b.triangle;
     });
     std::vector<bool> dropped(mesh.triangles.size());
@@ -136,7 +155,7 @@ struct EdgeUse {
     bool sameEdge(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
-std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh) {
+std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh, const Progress& progress) {
     std::vector<EdgeUse> uses;
     uses.reserve(3 * mesh.triangles.size());
     for (Index t = 0; t < mesh.triangles.size(); ++t) {
@@ -145,7 +164,7 @@ std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh) {
             uses.push_back({std::min(a, b), std::max(a, b), t, a < b});
         }
     }
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    sortUnlessStopped(uses, progress, [](const EdgeUse& a, const EdgeUse& b) {
         if (a.low != b.low) return a.low < b.low;
         return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
     });
@@ -207,12 +226,13 @@ Neighbours neighboursOf(const TriangleMesh& mesh, const std::vector<EdgeUse>& us
 // Turns the minority of each component round. Returns whether the outcome can be trusted: where more than a
 // quarter of a component had to turn, nobody knows which side its author meant. One component alone has only
 // one inside.
-bool orient(TriangleMesh& mesh, const std::vector<EdgeUse>& uses, MeshRepairReport& report) {
+bool orient(TriangleMesh& mesh, const std::vector<EdgeUse>& uses, MeshRepairReport& report,
+            const Progress& progress) {
     const Neighbours graph = neighboursOf(mesh, uses);
     enum : char { unseen, kept, turned };
     std::vector<char> state(mesh.triangles.size(), unseen);
     std::vector<Index> component;
-    std::size_t components = 0;
+    std::size_t components = 0, walked = 0;
     bool clear = true;
     for (Index seed = 0; seed < mesh.triangles.size(); ++seed) {
         if (state[seed] != unseen) continue;
@@ -222,6 +242,7 @@ bool orient(TriangleMesh& mesh, const std::vector<EdgeUse>& uses, MeshRepairRepo
         std::size_t turns = 0;
         for (std::size_t i = 0; i < component.size(); ++i) {
             const Index t = component[i];
+            checkNowAndThen(progress, ++walked);
             for (std::size_t e = graph.start[t]; e < graph.start[t + 1]; ++e) {
                 const auto [other, agree] = graph.entries[e];
                 if (state[other] != unseen) continue;
@@ -262,15 +283,19 @@ std::vector<BoundaryEdge> boundaryOf(const std::vector<EdgeUse>& uses, MeshRepai
 }
 
 // Simple loops, each as its points in order. At every point an edge that leads away is preferred, so that
-// loops run with the surface's orientation wherever it has one.
+// loops run with the surface's orientation wherever it has one. Time and memory are linear in the edges and
+// points but for the sort: every edge is walked once, taken off the path once and passed by a cursor twice.
 class LoopFinder {
   public:
-    explicit LoopFinder(std::vector<BoundaryEdge> edges) : edges_(std::move(edges)) {
+    LoopFinder(std::vector<BoundaryEdge> edges, std::size_t points, const Progress& progress)
+        : edges_(std::move(edges)), cursor_(points), place_(points, kNowhere), progress_(progress) {
+        ends_.reserve(2 * edges_.size());
         for (Index e = 0; e < edges_.size(); ++e) {
             ends_.push_back({edges_[e].from, 0, e});
             ends_.push_back({edges_[e].to, 1, e});
         }
         std::sort(ends_.begin(), ends_.end());
+        for (std::size_t i = ends_.size(); i-- > 0;) cursor_[ends_[i][0]] = i;
     }
 
     std::vector<std::vector<Index>> loops() {
@@ -284,40 +309,50 @@ class LoopFinder {
   private:
     // (point, 0 away or 1 towards, edge)
     using End = std::array<Index, 3>;
+    static constexpr Index kNowhere = ~Index(0);
 
     // Walks on until the start has no unused edge left; a point met twice on the way cuts a loop off.
-    // invariant: path is a simple path; every vertex has an even number of unused edges but for its two ends.
+    // invariant: path is a simple path and place_ its inverse; every vertex has an even number of unused
+    // edges but for the path's two ends.
     void walk(Index start, std::vector<std::vector<Index>>& found) {
         std::vector<Index> path{start};
+        place_[start] = 0;
         while (true) {
             const auto edge = unusedAt(path.back());
             if (edge == edges_.size()) {
                 assert(path.size() == 1);
+                place_[start] = kNowhere;
                 return;
             }
             edges_[edge].used = true;
+            checkNowAndThen(progress_, ++walked_);
             const Index next = edges_[edge].from == path.back() ? edges_[edge].to : edges_[edge].from;
-            const auto met = std::find(path.rbegin(), path.rend(), next);
-            if (met == path.rend()) {
+            if (place_[next] == kNowhere) {
+                place_[next] = static_cast<Index>(path.size());
                 path.push_back(next);
                 continue;
             }
-            const auto first = met.base() - 1;
+            const auto first = path.begin() + place_[next];
             found.emplace_back(first, path.end());
+            for (auto point = first + 1; point != path.end(); ++point) place_[*point] = kNowhere;
             path.erase(first + 1, path.end());
         }
     }
 
-    std::size_t unusedAt(Index point) const {
-        for (auto end = std::lower_bound(ends_.begin(), ends_.end(), End{point, 0, 0});
-             end != ends_.end() && (*end)[0] == point; ++end) {
-            if (!edges_[(*end)[2]].used) return (*end)[2];
+    // An edge once used stays used, so a point's cursor never has to go back.
+    std::size_t unusedAt(Index point) {
+        for (std::size_t& end = cursor_[point]; end < ends_.size() && ends_[end][0] == point; ++end) {
+            if (!edges_[ends_[end][2]].used) return ends_[end][2];
         }
         return edges_.size();
     }
 
     std::vector<BoundaryEdge> edges_;
     std::vector<End> ends_;
+    std::vector<std::size_t> cursor_;  // of every point: its first end that may be unused
+    std::vector<Index> place_;         // of every point: its index in the path, or kNowhere
+    std::size_t walked_ = 0;
+    const Progress& progress_;
 };
 
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
@@ -413,6 +448,13 @@ void closeLoops(TriangleMesh& mesh, const std::vector<std::vector<Index>>& loops
     report.looseRemoved = static_cast<std::int64_t>(loose.size());
 }
 
+void refuseNothing(const TriangleMesh& mesh, const std::string& name, const MeshRepairReport& report) {
+    if (!mesh.triangles.empty()) return;
+    throw InputError(name, fmt::format("no triangles are left of {}: {} degenerate, {} duplicates, {} loose",
+                                       report.facesRead, report.degenerateRemoved, report.duplicatesRemoved,
+                                       report.looseRemoved));
+}
+
 void describe(MeshRepairReport& report) {
     const auto note = [&](std::int64_t count, const char* one, const char* many) {
         if (count > 0) report.notes.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
@@ -433,35 +475,39 @@ void describe(MeshRepairReport& report) {
 }  // namespace
 
 TriangleMesh repairMesh(TriangleMesh mesh, const std::string& name, MeshRepairReport* reportOut,
-                        const RepairOptions& options) {
+                        const RepairOptions& options, const Progress& progress) {
     MeshRepairReport report;
     report.facesRead = static_cast<std::int64_t>(mesh.triangles.size());
-    mergePoints(mesh, report);
+    progress("repairing", 0);
+    mergePoints(mesh, report, progress);
     dropDegenerate(mesh, report);
-    dropDuplicates(mesh, report);
-    if (mesh.triangles.empty()) {
-        throw InputError(
-            name, fmt::format("no triangles are left of {}: {} degenerate, {} duplicates", report.facesRead,
-                              report.degenerateRemoved, report.duplicatesRemoved));
-    }
+    progress("repairing", 0.3);
+    dropDuplicates(mesh, report, progress);
+    refuseNothing(mesh, name, report);
 
-    std::vector<EdgeUse> uses = edgeUses(mesh);
+    progress("repairing", 0.5);
+    std::vector<EdgeUse> uses = edgeUses(mesh, progress);
     report.oriented = isBalanced(uses);
     bool trusted = true;
     if (!report.oriented) {
-        trusted = orient(mesh, uses, report);
-        uses = edgeUses(mesh);
+        progress("repairing", 0.7);
+        trusted = orient(mesh, uses, report, progress);
+        uses = edgeUses(mesh, progress);
     }
 
+    progress("repairing", 0.8);
     std::vector<BoundaryEdge> boundary = boundaryOf(uses, report);
     report.boundaryEdges = static_cast<std::int64_t>(boundary.size());
-    const auto loops = LoopFinder(std::move(boundary)).loops();
+    const auto loops = LoopFinder(std::move(boundary), mesh.points.size(), progress).loops();
     report.boundaryLoops = static_cast<std::int64_t>(loops.size());
     refuseLargeHoles(mesh, name, loops, report, options);
+    progress("repairing", 0.9);
     closeLoops(mesh, loops, report);
-    if (!loops.empty()) uses = edgeUses(mesh);
+    refuseNothing(mesh, name, report);
+    if (!loops.empty()) uses = edgeUses(mesh, progress);
     report.evenOdd = !trusted || !isBalanced(uses);
 
+    progress("repairing", 1);
     describe(report);
     if (reportOut) *reportOut = std::move(report);
     return mesh;

@@ -114,6 +114,65 @@ TEST(RepairMesh, RefusesHalfASphereAndSaysWhy) {
         << "with a larger limit it is filled";
 }
 
+// `count` triangles in a row: one boundary loop of count + 2 edges.
+TriangleMesh ribbon(std::uint32_t count) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < count + 2; ++i) mesh.points.push_back({0.5 * i, double(i % 2), 0});
+    for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+    return mesh;
+}
+
+// Loose triangles that share nothing but one point, which none of the others does; far from kBall.
+TriangleMesh star(std::uint32_t count) {
+    TriangleMesh mesh;
+    mesh.points.push_back({20, 0, 0});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        mesh.points.push_back({21, 1e-6 * i, 0});
+        mesh.points.push_back({21, 1e-6 * i, 1});
+        mesh.triangles.push_back({0, 2 * i + 1, 2 * i + 2});
+    }
+    return mesh;
+}
+
+// Were it quadratic in the boundary, each of the two would outlast any test's time limit.
+TEST(RepairMesh, WalksABoundaryOfMillionsOfEdges) {
+    EXPECT_THAT([] { repaired(ribbon(1'999'998)); },
+                ThrowsMessage<InputError>(HasSubstr("2000000 boundary edges in 1 loop(s), 1 too long")));
+}
+
+TEST(RepairMesh, WalksHundredsOfThousandsOfLoopsThroughOnePoint) {
+    const auto [mesh, report] = repaired(together(kBall, star(1'000'000)));
+    EXPECT_EQ(report.boundaryLoops, 1'000'000);
+    EXPECT_EQ(report.looseRemoved, 1'000'000);
+    EXPECT_EQ(mesh.triangles.size(), kBall.triangles.size());
+}
+
+TEST(RepairMesh, StopsWhereverItIsAsked) {
+    // Flipped and with holes, so that no pass is left out; 20,480 triangles, 61,440 edge uses.
+    TriangleMesh mesh = withFlips(sphere(10, 5), 0.1, 1);
+    for (int hole = 0; hole < 3; ++hole) mesh.triangles.erase(mesh.triangles.begin() + 5000 * hole);
+    int asked = 0, reported = 0;
+    double last = 0;
+    Progress progress;
+    progress.stopRequested = [&] { return ++asked, false; };
+    progress.report = [&](std::string_view, double done) {
+        ++reported;
+        EXPECT_GE(done, last);
+        last = done;
+    };
+    repairMesh(mesh, "part.stl", nullptr, {}, progress);
+    EXPECT_GT(reported, 5);
+    EXPECT_EQ(last, 1);
+    const int questions = asked;
+    ASSERT_GT(questions, reported + 10) << "inside the passes, too";
+    for (int after = 0; after < questions; ++after) {
+        asked = 0;
+        progress.report = {};
+        progress.stopRequested = [&] { return ++asked > after; };
+        EXPECT_THROW(repairMesh(mesh, "part.stl", nullptr, {}, progress), Cancelled) << after;
+    }
+}
+
 TEST(RepairMesh, FillsAsFarAsItsOptionAllows) {
     TriangleMesh broken = kBall;
     broken.triangles.pop_back();
@@ -187,6 +246,13 @@ TEST(RepairMesh, DropsLooseTriangles) {
     EXPECT_EQ(report.looseRemoved, 1);
     EXPECT_EQ(report.holesFilled, 0);
     EXPECT_EQ(mesh.triangles.size(), 1280u);
+}
+
+TEST(RepairMesh, RefusesWhereAllWasLoose) {
+    EXPECT_THAT(
+        [] { repaired(star(100), {.maxHole = 9}); },
+        ThrowsMessage<InputError>(HasSubstr("no triangles are left of 100: 0 degenerate, 0 duplicates, "
+                                            "100 loose")));
 }
 
 TEST(RepairMesh, KeepsEdgesWithFourTriangles) {
