@@ -4,19 +4,13 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "temp_folder.h"
 
 namespace isowave {
 namespace {
 
-std::filesystem::path freshFolder(const std::string& name) {
-    const auto folder = std::filesystem::temp_directory_path() / ("isowave_atomic_" + name);
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-    return folder;
-}
-
 TEST(AtomicFile, AppearsOnlyAtCommit) {
-    const auto folder = freshFolder("commit");
+    const test::TempFolder folder("commit");
     {
         AtomicFile file(folder / "a.txt");
         file.stream() << "hello";
@@ -24,30 +18,30 @@ TEST(AtomicFile, AppearsOnlyAtCommit) {
         file.commit();
     }
     EXPECT_EQ(std::filesystem::file_size(folder / "a.txt"), 5u);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
-    const auto folder = freshFolder("drop");
+    const test::TempFolder folder("drop");
     { AtomicFile(folder / "a.txt").stream() << "hello"; }
-    EXPECT_TRUE(std::filesystem::is_empty(folder));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneFails) {
-    const auto folder = freshFolder("old");
+    const test::TempFolder folder("old");
     std::ofstream(folder / "a.txt") << "old";
     { AtomicFile(folder / "a.txt").stream() << "new one"; }
     EXPECT_EQ(std::filesystem::file_size(folder / "a.txt"), 3u);
 }
 
 TEST(AtomicFile, RefusesAMissingFolderAndAFolder) {
-    const auto folder = freshFolder("missing");
+    const test::TempFolder folder("missing");
     EXPECT_THROW(AtomicFile(folder / "no" / "a.txt"), OperationError);
-    EXPECT_THROW(AtomicFile{folder}, OperationError);
+    EXPECT_THROW(AtomicFile{folder.path()}, OperationError);
 }
 
 TEST(AtomicFile, FollowsALinkAndKeepsIt) {
-    const auto folder = freshFolder("link");
+    const test::TempFolder folder("link");
     std::ofstream(folder / "target.txt") << "old";
     std::filesystem::create_symlink("target.txt", folder / "link.txt");
     AtomicFile file(folder / "link.txt");
@@ -58,7 +52,7 @@ TEST(AtomicFile, FollowsALinkAndKeepsIt) {
 }
 
 TEST(AtomicFile, WritesToAPipeOrDeviceInsteadOfReplacingIt) {
-    const auto folder = freshFolder("device");
+    const test::TempFolder folder("device");
     std::filesystem::create_symlink("/dev/null", folder / "null");
     AtomicFile file(folder / "null");
     file.stream() << "gone";
@@ -71,7 +65,7 @@ TEST(AtomicFile, WritesToAPipeOrDeviceInsteadOfReplacingIt) {
 
 TEST(AtomicFile, SaysThatTheDiskIsFull) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
-    const auto folder = freshFolder("full");
+    const test::TempFolder folder("full");
     // The temporary name is a link to /dev/full: every flush fails as on a full disk.
     const auto temporary = folder / ("a.txt.part-" + std::to_string(::getpid()));
     std::filesystem::create_symlink("/dev/full", temporary);
@@ -79,6 +73,19 @@ TEST(AtomicFile, SaysThatTheDiskIsFull) {
     file.stream() << "hello";
     EXPECT_THROW(file.commit(), OperationError);
     EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+}
+
+TEST(TempFolder, IsOfThisProcessAndGoneAfterwards) {
+    std::filesystem::path path;
+    {
+        const test::TempFolder folder("a"), other("b");
+        path = folder.path();
+        EXPECT_NE(path, other.path());
+        EXPECT_NE(path.string().find(std::to_string(::getpid())), std::string::npos);
+        std::ofstream(folder / "file") << "content";
+        EXPECT_TRUE(std::filesystem::exists(path / "file"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "polygonize/measure.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
+#include "temp_folder.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
 #include "volume/image.h"
@@ -177,7 +178,8 @@ TEST(Ladder, AnObliqueAnisotropicCroppedImageIsMeshedWhereItkPutsItsVoxels) {
             for (int x = 0; x < 30; ++x)
                 volume->SetPixel({{x, y, z}},
                                  short(300 + 40 * (7 - std::hypot(x - 14.2, y - 12.8, z - 9.4))));
-    const auto path = std::filesystem::temp_directory_path() / "isowave_oblique.nrrd";
+    const test::TempFolder folder;
+    const auto path = folder / "oblique.nrrd";
     // The crop starts at voxel (3, 2, 1) of the volume; the mesh has to lie where the volume is.
     const auto crop = itk::ExtractImageFilter<Volume, Volume>::New();
     crop->SetInput(volume);
@@ -206,7 +208,6 @@ TEST(Ladder, AnObliqueAnisotropicCroppedImageIsMeshedWhereItkPutsItsVoxels) {
     // All vertices but the centres of a few cells lie on edges between ITK's voxels.
     EXPECT_GT(double(onAnEdge), 0.99 * double(mesh.points.size()));
     EXPECT_GT(topologyOf(mesh).volume, 0);
-    std::filesystem::remove(path);
 }
 
 }  // namespace

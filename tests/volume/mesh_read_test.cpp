@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "temp_folder.h"
 #include "volume/mesh_checks.h"
 #include "volume/mesh_input.h"
 
@@ -221,7 +222,8 @@ TEST(ReadMesh, RefusesEveryTruncation) {
 TEST(ReadMesh, RefusesWhatIsNoMesh) {
     EXPECT_THAT([] { readMesh("no/such/file.stl"); }, refuses("no/such/file.stl: no such file"));
     EXPECT_THAT([] { readMesh(fs::temp_directory_path() / "x.txt"); }, refuses("'.txt' is no mesh format"));
-    const fs::path folder = fs::temp_directory_path() / "isowave_folder.stl";
+    const test::TempFolder temporary;
+    const fs::path folder = temporary / "folder.stl";
     fs::create_directories(folder);
     EXPECT_THAT([&] { readMesh(folder); }, refuses("is a folder"));
     EXPECT_REFUSED("a.obj", "", "the file is empty");

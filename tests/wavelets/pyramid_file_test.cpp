@@ -7,18 +7,12 @@
 #include <iterator>
 
 #include "base/error.h"
+#include "temp_folder.h"
 #include "volume/vdb_file.h"
 #include "zoo/zoo.h"
 
 namespace isowave::wavelets {
 namespace {
-
-std::filesystem::path freshFolder(const std::string& name) {
-    const auto folder = std::filesystem::temp_directory_path() / ("isowave_pyramid_" + name);
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-    return folder;
-}
 
 std::string bytesOf(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
@@ -38,7 +32,7 @@ Pyramid small() {
 }
 
 TEST(PyramidFile, ComesBackToTheBitForTheWholeZoo) {
-    const auto folder = freshFolder("zoo");
+    const test::TempFolder folder("zoo");
     for (const auto& [name, field] : zoo::allFields()) {
         Pyramid pyramid = analyse(field);
         pyramid.source["input.path"] = name;
@@ -55,14 +49,14 @@ TEST(PyramidFile, ComesBackToTheBitForTheWholeZoo) {
 }
 
 TEST(PyramidFile, TheSamePyramidIsTheSameBytes) {
-    const auto folder = freshFolder("bytes");
+    const test::TempFolder folder("bytes");
     writePyramid(folder / "a.vdb", small());
     writePyramid(folder / "b.vdb", small());
     EXPECT_EQ(bytesOf(folder / "a.vdb"), bytesOf(folder / "b.vdb"));
 }
 
 TEST(PyramidFile, RejectsEveryTruncation) {
-    const auto folder = freshFolder("truncated");
+    const test::TempFolder folder("truncated");
     writePyramid(folder / "whole.vdb", small());
     const std::string whole = bytesOf(folder / "whole.vdb");
     ASSERT_NO_THROW(readPyramid(folder / "whole.vdb"));
@@ -78,7 +72,7 @@ TEST(PyramidFile, RejectsEveryTruncation) {
 }
 
 TEST(PyramidFile, RefusesAnotherVersionAndSaysWhich) {
-    const auto folder = freshFolder("version");
+    const test::TempFolder folder("version");
     openvdb::MetaMap meta;
     meta.insertMeta("isowave:format", openvdb::StringMetadata("pyramid"));
     meta.insertMeta("isowave:version", openvdb::Int32Metadata(7));
@@ -93,7 +87,7 @@ TEST(PyramidFile, RefusesAnotherVersionAndSaysWhich) {
 }
 
 TEST(PyramidFile, RefusesWhatIsNotAPyramid) {
-    const auto folder = freshFolder("other");
+    const test::TempFolder folder("other");
     const Pyramid pyramid = small();
     writeField(folder / "field.vdb", pyramid.coarsest);
     EXPECT_FALSE(isPyramidFile(folder / "field.vdb"));
@@ -106,7 +100,7 @@ TEST(PyramidFile, RefusesWhatIsNotAPyramid) {
 }
 
 TEST(PyramidFile, NamesAMissingPart) {
-    const auto folder = freshFolder("part");
+    const test::TempFolder folder("part");
     writePyramid(folder / "whole.vdb", small());
     const VdbContent content = readVdb(folder / "whole.vdb");
     openvdb::GridCPtrVec some;
@@ -122,7 +116,7 @@ TEST(PyramidFile, NamesAMissingPart) {
 }
 
 TEST(PyramidFile, RefusesACoarsestShapeOfAnotherField) {
-    const auto folder = freshFolder("shape");
+    const test::TempFolder folder("shape");
     Pyramid pyramid = small();
     pyramid.coarsest.shape = Shape::create(false);
     writePyramid(folder / "a.vdb", pyramid);
