@@ -22,6 +22,7 @@ class AtomicFile {
     // OperationError.
     std::ofstream& stream() { return stream_; }
     const std::filesystem::path& temporary() const { return temporary_; }
+    const std::filesystem::path& place() const { return place_; }
 
     // Flushes to the disk, closes, renames. Throws OperationError and leaves the place untouched when the
     // disk is full or the rename fails.

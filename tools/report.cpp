@@ -4,10 +4,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <iostream>
+#include <cstring>
 
-#include "base/atomic_file.h"
+#include "base/error.h"
 
 namespace isowave::tools {
 
@@ -72,18 +73,13 @@ std::string textOf(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void writeJson(const std::string& file, const Json& json) {
-    if (file == "-") {
-        std::cout << textOf(json);
-        return;
-    }
-    AtomicFile out(file);
+void writeJson(AtomicFile& file, const Json& json) {
     try {
-        out.stream() << textOf(json);
+        file.stream() << textOf(json);
     } catch (const std::ios_base::failure&) {
-        // commit() reports the same failure, with the errno and the name of the file
+        throw OperationError(file.place().string(),
+                             std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
     }
-    out.commit();
 }
 
 // ---- text ----

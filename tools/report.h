@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "polygonize/topology.h"
 #include "volume/field.h"
 
@@ -60,8 +61,8 @@ void putTopology(Json& json, const MeshTopology& topology);
 // Indented, one trailing newline; file names that are not UTF-8 get replacement characters.
 std::string textOf(const Json& json);
 
-// file: a path, written whole or not at all, or "-" for standard output.
-void writeJson(const std::string& file, const Json& json);
+// Into an open file; commit() is the caller's.
+void writeJson(AtomicFile& file, const Json& json);
 
 // Columns aligned to the right, the first one to the left; headers carry the units.
 class Table {

@@ -321,6 +321,13 @@ const std::vector<BadInput>& rows() {
              return Arguments{"lod", (f / "a.nrrd").string(), "--iso", "0", "-o", "/proc/part"};
          },
          {"/proc"}},
+        {"ReportThatCannotBeWritten",
+         1,
+         [](const Folder& f) {
+             writeBall(f / "a.nrrd");
+             return lod(f, "a.nrrd", {"--iso", "0", "--json", (f / "nowhere/report.json").string()});
+         },
+         {"nowhere/report.json"}},
         {"VoxelsOfAnImage",
          2,
          [](const Folder& f) {
