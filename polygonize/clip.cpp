@@ -6,6 +6,12 @@
 namespace isowave {
 namespace {
 
+// A vertex nearer than this to a face, in voxels, lies on it. Marching cubes puts vertices on lattice edges,
+// and the faces of an image are lattice planes: rounding decides on which side such a vertex comes out, and
+// cutting its edges a hair away would make triangles of no width, whose corners STL's float32 cannot tell
+// apart.
+constexpr double kOnFace = 1e-6;
+
 // One face of the box after another. height > 0 is the side that stays; a vertex at height 0 stays.
 class HalfSpaceCut {
   public:
@@ -20,24 +26,17 @@ class HalfSpaceCut {
     }
 
   private:
-    bool stays(std::uint32_t v) const { return height_[v] >= 0; }
-
+    // A vertex on the face stays and is its own cut: an edge from it leads outside without another vertex.
     void cut(const Triangle& t, std::vector<Triangle>& kept) {
-        const int count = stays(t[0]) + stays(t[1]) + stays(t[2]);
-        if (count == 3) kept.push_back(t);
-        if (count == 0 || count == 3) return;
-        // Turn the triangle so that its odd vertex (the one alone on its side) comes first; orientation is
-        // kept.
-        int first = 0;
-        while (stays(t[first]) != (count == 1)) ++first;
-        const std::uint32_t a = t[first], b = t[(first + 1) % 3], c = t[(first + 2) % 3];
-        const std::uint32_t ab = between(a, b), ac = between(a, c);
-        if (count == 1) {
-            kept.push_back({a, ab, ac});
-        } else {
-            kept.push_back({ab, b, c});
-            kept.push_back({ab, c, ac});
+        std::uint32_t polygon[4];
+        int corners = 0;
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+            if (height_[a] >= 0) polygon[corners++] = a;
+            if ((height_[a] > 0 && height_[b] < 0) || (height_[a] < 0 && height_[b] > 0))
+                polygon[corners++] = between(a, b);
         }
+        for (int i = 2; i < corners; ++i) kept.push_back({polygon[0], polygon[i - 1], polygon[i]});
     }
 
     // The vertex where edge ab meets the face; the same one for both triangles of the edge.
@@ -98,7 +97,8 @@ TriangleMesh clipToBox(const TriangleMesh& mesh, const openvdb::Mat4d& worldToIn
         height.reserve(current.points.size());
         for (const Point& p : current.points) {
             const double x = worldToIndex.transform(openvdb::Vec3d(p[0], p[1], p[2]))[axis];
-            height.push_back(face % 2 == 0 ? x - low[axis] : high[axis] - x);
+            const double h = face % 2 == 0 ? x - low[axis] : high[axis] - x;
+            height.push_back(std::abs(h) < kOnFace ? 0 : h);
         }
         current = HalfSpaceCut(std::move(current), std::move(height)).run();
     }

@@ -78,5 +78,38 @@ TEST(Clip, AnOpenBorderLeavesTheCapOut) {
     EXPECT_NEAR(high, 19, 1e-9);
 }
 
+// Vertices of a polygonized field lie on lattice edges, many of them in the very planes where the image ends.
+TEST(Clip, MakesNoTrianglesOfNoWidth) {
+    Image image;
+    image.size = {20, 24, 24};
+    // Turned and moved, so that world coordinates of lattice planes are rounded.
+    image.indexToWorld = Mat4d(.3, .4, 0., 0., -.4, .3, 0., 0., 0., 0., .7, 0., 113.7, -41.3, 17.9, 1.);
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 20; ++x)
+                image.values.push_back(float(8 - std::hypot(y - 11.3, z - 12.1) + std::sin(0.7 * x)));
+    const auto field = fitDistance(*distanceFromImage(image, {.iso = 0, .openBorder = true}, 4));
+    const auto mesh = clipToBox(polygonize(field), image.indexToWorld.inverse(), Vec3d(0), Vec3d(19, 23, 23));
+    ASSERT_GT(mesh.triangles.size(), 1000u);
+    double shortest = 1e9;
+    for (const Triangle& t : mesh.triangles)
+        for (int i = 0; i < 3; ++i) {
+            const Point &a = mesh.points[t[i]], &b = mesh.points[t[(i + 1) % 3]];
+            shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+        }
+    EXPECT_GT(shortest, 1e-5) << "one edge a triangle may be short, none of rounding's size";
+    EXPECT_TRUE(topologyOf(mesh).manifold());
+    EXPECT_TRUE(topologyOf(mesh).oriented());
+}
+
+TEST(Clip, KeepsVerticesOnTheFaceWithoutDoublingThem) {
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+    mesh.triangles = {{0, 1, 3}, {0, 4, 1}, {1, 2, 3}, {2, 1, 4}};
+    const auto upper = clipToBox(mesh, Mat4d::identity(), Vec3d(-5, -5, 0), Vec3d(5));
+    EXPECT_EQ(upper.triangles.size(), 2u);
+    EXPECT_EQ(upper.points.size(), 4u);
+}
+
 }  // namespace
 }  // namespace isowave
