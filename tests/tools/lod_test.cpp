@@ -303,6 +303,33 @@ TEST(Space, RasNegatesXAndY) {
     EXPECT_LT(same["symmetric"]["max"].get<double>(), 1e-4);
 }
 
+TEST(OpenBorder, LeavesTheCapOutAlsoWhenItComesFromAPyramid) {
+    const Folder folder;
+    const Size size{20, 24, 24};
+    // A rod along x through the whole image.
+    writeNrrd(folder / "rod.nrrd", size,
+              sampled<float>(size, [](int, int y, int z) { return 8 - std::hypot(y - 11.3, z - 12.1); }),
+              "space: left-posterior-superior\nspace directions: (0,2,0) (-2,0,0) (0,0,2)\nspace origin: "
+              "(5,6,7)\n");
+    const std::string rod = (folder / "rod.nrrd").string(), pyramid = (folder / "rod.vdb").string();
+    succeed({"lod", rod, "--iso", "0", "--levels", "0..1", "-o", (folder / "capped").string()});
+    succeed(
+        {"lod", rod, "--iso", "0", "--levels", "0..1", "--open-border", "-o", (folder / "open").string()});
+    succeed({"analyse", rod, "--iso", "0", "--open-border", "-o", pyramid});
+    succeed({"lod", pyramid, "--levels", "0..1", "-o", (folder / "again").string()});
+    EXPECT_EQ(jsonFile(folder / "capped/report.json")["levels"][0]["closed"], true);
+    const double tube = 2 * kPi * 16 * 38;  // radius 8 and length 19 voxels of 2 mm
+    for (const char* name : {"open", "again"}) {
+        const Json levels = jsonFile(folder / name / "report.json")["levels"];
+        for (const Json& level : levels) {
+            EXPECT_EQ(level["closed"], false) << name;
+            EXPECT_EQ(level["manifold"], true) << name;
+            EXPECT_EQ(level["genus"], nullptr) << name;
+            EXPECT_NEAR(level["area"].get<double>(), tube, 0.03 * tube) << name;
+        }
+    }
+}
+
 // ---- meshes ----
 
 TEST(MeshLadder, KeepsTheHoleOfATorusAtLevelZero) {
