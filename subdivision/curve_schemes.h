@@ -53,6 +53,9 @@ CurveScheme ownScheme(const Mask& mask, int width);
 // Inside a curve: A, B, Q of the scheme. Throws as construct() does.
 Filters interiorFilters(const CurveScheme& scheme);
 
+// What the fine point i of an open four-point curve with n coarse points takes from them.
+Diagram fourPointRow(int n, int i);
+
 // All diagrams of an open curve with n coarse points (nodes (0,0) .. (n-1,0)), proved.
 // Throws InputError when n is too small, or the scheme is for closed curves only.
 struct OpenSystem {
