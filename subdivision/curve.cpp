@@ -207,8 +207,8 @@ CurveLevels decompose(const Polyline& curve, const CurveFilters& filters, int le
         // Beyond 40 levels the number needed is of no use to anybody.
         const std::string needed =
             levels > 40 ? "far more" : "at least " + std::to_string(filters.fewestPoints(levels));
-        throw InputError("curve", "has " + std::to_string(m) + " points; " + std::to_string(levels) + " levels of an " +
-                                      (filters.closed() ? "closed " : "open ") + filters.scheme().name + " curve need " +
+        throw InputError("curve", "has " + std::to_string(m) + " points; " + std::to_string(levels) + " levels of " +
+                                      (filters.closed() ? "a closed " : "an open ") + filters.scheme().name + " curve need " +
                                       needed + "; these points allow " + most);
     }
     CurveLevels result{filters.scheme().name, curve, {}};

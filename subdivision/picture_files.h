@@ -1,4 +1,4 @@
-// Pictures as height fields: PNG and TIFF through ITK. The one header of this folder that needs `isowave::pictures`.
+// Pictures as height fields: PNG by libpng, TIFF by ITK. The one header of this folder that needs `isowave::pictures`.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace isowave::subdivision {
 
-// .png .tif .tiff by ITK (8 and 16 bits, float TIFF; colours become their luminance); the rest by readGrid().
+// .png .tif .tiff (8 and 16 bits, float TIFF; colours become their luminance); the rest by readGrid().
 // Throws InputError when the file cannot be read, or has fewer than 2 rows or columns.
 Grid readPictureOrGrid(const std::filesystem::path& path);
 

@@ -228,7 +228,7 @@ SurfaceScheme surfaceScheme(std::string_view name) {
     if (base != "butterfly" && base != "loop") throw unknown("is not known");
     scheme.family = base == "loop" ? Family::LoopLike : Family::Butterfly;
     scheme.mask = namedMask(base);
-    if (width.empty()) {
+    if (dash == name.npos) {
         scheme.width = base == "loop" ? 1 : 3;
         scheme.name += "-" + std::to_string(scheme.width);
     } else if (width == "trivial" && base == "butterfly") {

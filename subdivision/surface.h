@@ -13,7 +13,7 @@
 // that keeps its ends; a corner is kept. Inside, Butterfly takes the wings that lie outside by *reflection*: the
 // wing across the triangle (a, b, c) beyond the side (a, c) is a + c - b, the fourth corner of the parallelogram.
 // (Mirroring at the side's line instead, also found in print, gives other filters: the centre of the row one level
-// in becomes 603804/805874 instead of 10994599/16197945, and B(10.1) is not reproduced.)
+// in becomes 603803769/805874419 instead of 10994599/16197945, and B(10.1) is not reproduced.)
 // A inside takes the part of its ball that lies on the patch.
 //
 // No Q is needed to put a surface together. With A0 the left inverse that B and Q0 were made from,
