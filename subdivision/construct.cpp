@@ -20,7 +20,8 @@ std::vector<Node> overlaps(const Diagram& fixed, const Diagram& moving) {
     const Extent f = extent(fixed), m = extent(moving);
     std::vector<Node> shifts;
     for (int y = ceilHalf(f.low.y - m.high.y); y <= floorHalf(f.high.y - m.low.y); ++y) {
-        for (int x = ceilHalf(f.low.x - m.high.x); x <= floorHalf(f.high.x - m.low.x); ++x) shifts.push_back({x, y});
+        for (int x = ceilHalf(f.low.x - m.high.x); x <= floorHalf(f.high.x - m.low.x); ++x)
+            shifts.push_back({x, y});
     }
     return shifts;
 }
@@ -36,8 +37,8 @@ void check(Proof& proof, const char* product, const Diagram& row, const Diagram&
         const Rational expected = one && t == Node{} ? 1 : 0;
         const Rational found = inner(row, column.shifted(2 * t));
         if (found != expected && proof.failure.empty()) {
-            proof.failure = std::string(product) + " at shift " + write(t) + " is " + toString(found) + ", not " +
-                            toString(expected);
+            proof.failure = std::string(product) + " at shift " + write(t) + " is " + toString(found) +
+                            ", not " + toString(expected);
         }
     }
 }
@@ -45,7 +46,8 @@ void check(Proof& proof, const char* product, const Diagram& row, const Diagram&
 // The x of least norm on `window` whose inner product with every shift of p that touches the window is 1 at
 // shift 0 and 0 else.
 std::optional<Diagram> leastNormRow(const Mask& mask, const std::vector<Node>& window) {
-    const auto touching = overlaps(Diagram::on(window, std::vector<Rational>(window.size(), Rational(1))), mask.p);
+    const auto touching =
+        overlaps(Diagram::on(window, std::vector<Rational>(window.size(), Rational(1))), mask.p);
     Matrix e;
     std::vector<Rational> r;
     bool hasOne = false;
@@ -113,8 +115,8 @@ std::string write(const Polynomial& f) {
     return text;
 }
 
-// A P = I has a solution of *some* width if and only if the even and the odd taps have no common factor (Bezout).
-// With a common factor g every sequence that g annihilates is mapped to 0, so P is not injective.
+// A P = I has a solution of *some* width if and only if the even and the odd taps have no common factor
+// (Bezout). With a common factor g every sequence that g annihilates is mapped to 0, so P is not injective.
 std::string sharedFactor(const Diagram& p) {
     const Extent box = extent(p);
     Polynomial even, odd;
@@ -130,7 +132,8 @@ std::string sharedFactor(const Diagram& p) {
 bool isInjectiveOnTorus(const Mask& mask, int n) {
     const auto index = [n](Node fine) {
         const int side = 2 * n;
-        return static_cast<std::size_t>(((fine.y % side + side) % side) * side + ((fine.x % side + side) % side));
+        return static_cast<std::size_t>(((fine.y % side + side) % side) * side +
+                                        ((fine.x % side + side) % side));
     };
     Matrix columns;
     for (int y = 0; y < n; ++y) {
@@ -151,8 +154,8 @@ int parityOfTaps(const Mask& mask) {
 struct LocalPair {
     std::vector<Node> details;
     std::vector<Diagram> b, q;
-    bool needsLift = true;   // Q = (I - P A) Q0; false when A Q0 = 0 already
-    bool rescale = false;    // the largest value of each Q column becomes +1
+    bool needsLift = true;  // Q = (I - P A) Q0; false when A Q0 = 0 already
+    bool rescale = false;   // the largest value of each Q column becomes +1
 };
 
 LocalPair trivialPair(const Mask& mask) {
@@ -200,7 +203,8 @@ std::optional<std::pair<Mask, Mask>> factors(const Mask& mask) {
         if (node.x == pivot.x) v.p.add({node.y, 0}, weight / value);
     }
     if (product(u.p, v.p) != mask.p) return std::nullopt;
-    // Share the factor so that each keeps constants, when the whole does: a column of P sums to the dilation, 2.
+    // Share the factor so that each keeps constants, when the whole does: a column of P sums to the
+    // dilation, 2.
     const Rational sum = u.p.sum();
     if (sum != 0) {
         u.p = u.p.scaled(2 / sum);
@@ -255,10 +259,11 @@ LocalPair localPair(const Mask& mask, const Diagram& a, int width) {
     for (int w = 1; w <= 2; ++w) {
         if (const auto a0 = oneTapInverse(mask, w)) return oneTapPair(mask, *a0);
     }
-    throw InputError(mask.name,
-                     "P has a left inverse, but no local B is known: the mask does not interpolate, is not a "
-                     "product of two masks on the line, and no left inverse of width 1 or 2 reads one vertex node "
-                     "only; use a mask of one of these three kinds");
+    throw InputError(
+        mask.name,
+        "P has a left inverse, but no local B is known: the mask does not interpolate, is not a "
+        "product of two masks on the line, and no left inverse of width 1 or 2 reads one vertex node "
+        "only; use a mask of one of these three kinds");
 }
 
 Rational largest(const Diagram& diagram) {
@@ -296,24 +301,27 @@ Filters complete(const Mask& mask, const Diagram& a, int width) {
 [[noreturn]] void refuseWidth(const Mask& mask, int width) {
     if (mask.lattice == Lattice::Line) {
         if (const std::string factor = sharedFactor(mask.p); !factor.empty()) {
-            throw InputError(mask.name, "P is not injective: its even and odd taps share the factor " + factor +
-                                            ", so P maps every sequence that this annihilates to 0 and no finite A "
-                                            "exists at any width; change the mask");
+            throw InputError(mask.name,
+                             "P is not injective: its even and odd taps share the factor " + factor +
+                                 ", so P maps every sequence that this annihilates to 0 and no finite A "
+                                 "exists at any width; change the mask");
         }
     } else {
         for (int n = 1; n <= 4; ++n) {
             if (isInjectiveOnTorus(mask, n)) continue;
             throw InputError(mask.name, "P is not injective: on the torus of " + std::to_string(n) + " x " +
-                                            std::to_string(n) + " coarse nodes its columns are dependent, so no "
+                                            std::to_string(n) +
+                                            " coarse nodes its columns are dependent, so no "
                                             "finite A exists at any width; change the mask");
         }
     }
     const int atMost = mask.lattice == Lattice::Line ? 41 : 4;
     const char* unit = mask.lattice == Lattice::Line ? " taps" : " rings";
     const auto smallest = smallestWidth(mask, atMost);
-    throw InputError(mask.name, "no A of width " + std::to_string(width) + " has AP = I; " +
-                                    (smallest ? "the smallest that exists has " + std::to_string(*smallest) + unit
-                                              : "none was found up to " + std::to_string(atMost) + unit));
+    throw InputError(mask.name,
+                     "no A of width " + std::to_string(width) + " has AP = I; " +
+                         (smallest ? "the smallest that exists has " + std::to_string(*smallest) + unit
+                                   : "none was found up to " + std::to_string(atMost) + unit));
 }
 
 }  // namespace
@@ -384,7 +392,8 @@ Filters construct(const Mask& mask, int width) {
     if (line && width % 2 != parityOfTaps(mask)) {
         throw InputError(mask.name, "width " + std::to_string(width) + " does not fit: the mask has an " +
                                         (parityOfTaps(mask) ? "odd" : "even") +
-                                        " number of taps, and A is centred on it; take " + std::to_string(width + 1));
+                                        " number of taps, and A is centred on it; take " +
+                                        std::to_string(width + 1));
     }
     const auto a = leastNormA(mask, width);
     if (!a) refuseWidth(mask, width);

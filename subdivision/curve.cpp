@@ -21,7 +21,8 @@ void applyRow(const FilterRow& row, std::ptrdiff_t first, const double* in, doub
 }
 
 template <int Dim>
-void applyWrapped(const FilterRow& row, std::ptrdiff_t first, const double* in, std::ptrdiff_t inputs, double* out) {
+void applyWrapped(const FilterRow& row, std::ptrdiff_t first, const double* in, std::ptrdiff_t inputs,
+                  double* out) {
     for (std::size_t k = 0; k < row.weights.size(); ++k) {
         std::ptrdiff_t i = (first + static_cast<std::ptrdiff_t>(k)) % inputs;
         if (i < 0) i += inputs;
@@ -32,7 +33,8 @@ void applyWrapped(const FilterRow& row, std::ptrdiff_t first, const double* in, 
 template <int Dim>
 void applyAll(const FilterBank& bank, bool closed, const double* in, std::size_t inputCount, double* out,
               std::size_t outputCount) {
-    const auto inputs = static_cast<std::ptrdiff_t>(inputCount), outputs = static_cast<std::ptrdiff_t>(outputCount);
+    const auto inputs = static_cast<std::ptrdiff_t>(inputCount),
+               outputs = static_cast<std::ptrdiff_t>(outputCount);
     const auto head = std::min(outputs, static_cast<std::ptrdiff_t>(bank.head.size()));
     const auto tail = static_cast<std::ptrdiff_t>(bank.tail.size());
     const auto period = static_cast<std::ptrdiff_t>(bank.inner.size());
@@ -82,7 +84,8 @@ void insertVirtual(std::vector<double>& points, int dimension, const CurveFilter
 }
 
 // One level: points of size m become n points; returns the details.
-std::vector<double> halve(std::vector<double>& points, int dimension, const CurveFilters& filters, std::size_t n) {
+std::vector<double> halve(std::vector<double>& points, int dimension, const CurveFilters& filters,
+                          std::size_t n) {
     const auto d = static_cast<std::size_t>(dimension);
     const std::size_t m = points.size() / d, fine = filters.fineSize(n);
     if (fine > m) insertVirtual(points, dimension, filters, n);
@@ -94,8 +97,8 @@ std::vector<double> halve(std::vector<double>& points, int dimension, const Curv
 }
 
 // The other way: n points and m - n details (none at all stand for zeros) become m points.
-std::vector<double> doubled(const std::vector<double>& points, const std::vector<double>* details, int dimension,
-                            const CurveFilters& filters, std::size_t m) {
+std::vector<double> doubled(const std::vector<double>& points, const std::vector<double>* details,
+                            int dimension, const CurveFilters& filters, std::size_t m) {
     const auto d = static_cast<std::size_t>(dimension);
     const std::size_t n = points.size() / d, fine = filters.fineSize(n);
     const auto& maps = filters.maps(n);
@@ -114,20 +117,24 @@ std::vector<double> doubled(const std::vector<double>& points, const std::vector
 
 void checkCurve(const Polyline& curve, const CurveFilters& filters) {
     if (curve.dimension != 2 && curve.dimension != 3) {
-        throw InputError("curve", "its points have " + std::to_string(curve.dimension) + " coordinates, not 2 or 3");
+        throw InputError("curve",
+                         "its points have " + std::to_string(curve.dimension) + " coordinates, not 2 or 3");
     }
     if (curve.coordinates.size() % static_cast<std::size_t>(curve.dimension) != 0) {
-        throw InputError("curve", std::to_string(curve.coordinates.size()) + " coordinates do not make points of " +
+        throw InputError("curve", std::to_string(curve.coordinates.size()) +
+                                      " coordinates do not make points of " +
                                       std::to_string(curve.dimension));
     }
     if (curve.closed != filters.closed()) {
-        throw InputError("curve", std::string("is ") + (curve.closed ? "closed" : "open") + " but the filters are for " +
-                                      (curve.closed ? "open" : "closed") + " curves");
+        throw InputError("curve", std::string("is ") + (curve.closed ? "closed" : "open") +
+                                      " but the filters are for " + (curve.closed ? "open" : "closed") +
+                                      " curves");
     }
     for (std::size_t k = 0; k < curve.coordinates.size(); ++k) {
         if (std::isfinite(curve.coordinates[k])) continue;
         const auto d = static_cast<std::size_t>(curve.dimension);
-        throw InputError("curve", std::string("coordinate ") + "xyz"[k % d] + " of point " + std::to_string(k / d) +
+        throw InputError("curve", std::string("coordinate ") + "xyz"[k % d] + " of point " +
+                                      std::to_string(k / d) +
                                       " is not a finite number; remove the point or mend it");
     }
 }
@@ -136,13 +143,15 @@ void checkCurve(const Polyline& curve, const CurveFilters& filters) {
 void checkLevels(const CurveLevels& curve, const CurveFilters& filters) {
     checkCurve(curve.coarse, filters);
     if (curve.scheme != filters.scheme().name) {
-        throw InputError("levels", "were made by the scheme '" + curve.scheme + "', not by '" + filters.scheme().name + "'");
+        throw InputError("levels", "were made by the scheme '" + curve.scheme + "', not by '" +
+                                       filters.scheme().name + "'");
     }
     std::size_t n = curve.coarse.size();
     for (std::size_t k = curve.details.size(); k-- > 0;) {
         const CurveDetails& details = curve.details[k];
         if (filters.coarseSize(details.points) != n) {
-            throw InputError("levels", "level " + std::to_string(k) + " has " + std::to_string(details.points) +
+            throw InputError("levels", "level " + std::to_string(k) + " has " +
+                                           std::to_string(details.points) +
                                            " points, which do not come from the " + std::to_string(n) +
                                            " of level " + std::to_string(k + 1));
         }
@@ -154,7 +163,8 @@ void checkLevels(const CurveLevels& curve, const CurveFilters& filters) {
         }
         for (const double value : details.coordinates) {
             if (!std::isfinite(value)) {
-                throw InputError("levels", "details of level " + std::to_string(k) + " hold a number that is not finite");
+                throw InputError(
+                    "levels", "details of level " + std::to_string(k) + " hold a number that is not finite");
             }
         }
         n = details.points;
@@ -173,8 +183,9 @@ Polyline climb(const CurveLevels& curve, const CurveFilters& filters, int level,
     Polyline result = curve.coarse;
     for (int k = curve.levels() - 1; k >= level; --k) {
         const CurveDetails& details = curve.details[static_cast<std::size_t>(k)];
-        result.coordinates = doubled(result.coordinates, k >= lastWithDetails ? &details.coordinates : nullptr,
-                                     result.dimension, filters, details.points);
+        result.coordinates =
+            doubled(result.coordinates, k >= lastWithDetails ? &details.coordinates : nullptr,
+                    result.dimension, filters, details.points);
     }
     return result;
 }
@@ -187,29 +198,35 @@ double lengthSquared(const double* v, int dimension) {
 
 }  // namespace
 
-void applyBank(const FilterBank& bank, bool closed, int dimension, const double* in, std::size_t inputs, double* out,
-               std::size_t outputs, bool accumulate) {
+void applyBank(const FilterBank& bank, bool closed, int dimension, const double* in, std::size_t inputs,
+               double* out, std::size_t outputs, bool accumulate) {
     if (!accumulate) std::fill_n(out, outputs * static_cast<std::size_t>(dimension), 0.0);
     switch (dimension) {
-        case 1: return applyAll<1>(bank, closed, in, inputs, out, outputs);
-        case 2: return applyAll<2>(bank, closed, in, inputs, out, outputs);
-        case 3: return applyAll<3>(bank, closed, in, inputs, out, outputs);
-        default: assert(false && "dimension is 1, 2 or 3");
+        case 1:
+            return applyAll<1>(bank, closed, in, inputs, out, outputs);
+        case 2:
+            return applyAll<2>(bank, closed, in, inputs, out, outputs);
+        case 3:
+            return applyAll<3>(bank, closed, in, inputs, out, outputs);
+        default:
+            assert(false && "dimension is 1, 2 or 3");
     }
 }
 
 CurveLevels decompose(const Polyline& curve, const CurveFilters& filters, int levels) {
     checkCurve(curve, filters);
-    if (levels < 0) throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 or more");
+    if (levels < 0)
+        throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 or more");
     const std::size_t m = curve.size();
     if (filters.mostLevels(m) < levels) {
         const std::string most = std::to_string(filters.mostLevels(m));
         // Beyond 40 levels the number needed is of no use to anybody.
         const std::string needed =
             levels > 40 ? "far more" : "at least " + std::to_string(filters.fewestPoints(levels));
-        throw InputError("curve", "has " + std::to_string(m) + " points; " + std::to_string(levels) + " levels of " +
-                                      (filters.closed() ? "a closed " : "an open ") + filters.scheme().name + " curve need " +
-                                      needed + "; these points allow " + most);
+        throw InputError("curve", "has " + std::to_string(m) + " points; " + std::to_string(levels) +
+                                      " levels of " + (filters.closed() ? "a closed " : "an open ") +
+                                      filters.scheme().name + " curve need " + needed +
+                                      "; these points allow " + most);
     }
     CurveLevels result{filters.scheme().name, curve, {}};
     for (int k = 0; k < levels; ++k) {
@@ -234,6 +251,17 @@ std::size_t detailCount(const CurveLevels& curve) {
     std::size_t count = 0;
     for (const auto& details : curve.details) {
         count += details.coordinates.size() / static_cast<std::size_t>(curve.coarse.dimension);
+    }
+    return count;
+}
+
+std::size_t nonzeroDetailCount(const CurveLevels& curve) {
+    const auto d = static_cast<std::ptrdiff_t>(curve.coarse.dimension);
+    std::size_t count = 0;
+    for (const auto& details : curve.details) {
+        for (auto at = details.coordinates.begin(); at != details.coordinates.end(); at += d) {
+            count += std::any_of(at, at + d, [](double v) { return v != 0; });
+        }
     }
     return count;
 }
@@ -276,9 +304,10 @@ void edit(CurveLevels& curve, const CurveFilters& filters, int level, const Poly
     const std::size_t expected =
         level == curve.levels() ? curve.coarse.size() : curve.details[static_cast<std::size_t>(level)].points;
     if (points.size() != expected || points.dimension != curve.coarse.dimension) {
-        throw InputError("curve", "level " + std::to_string(level) + " has " + std::to_string(expected) + " points in " +
-                                      std::to_string(curve.coarse.dimension) + "D; " + std::to_string(points.size()) +
-                                      " in " + std::to_string(points.dimension) + "D were given");
+        throw InputError("curve", "level " + std::to_string(level) + " has " + std::to_string(expected) +
+                                      " points in " + std::to_string(curve.coarse.dimension) + "D; " +
+                                      std::to_string(points.size()) + " in " +
+                                      std::to_string(points.dimension) + "D were given");
     }
     CurveLevels below = decompose(points, filters, curve.levels() - level);
     curve.coarse = std::move(below.coarse);

@@ -40,8 +40,9 @@ class Collector {
     void add(const double* point, int dimension) {
         if (curve_.coordinates.empty()) curve_.dimension = dimension;
         if (dimension != curve_.dimension) {
-            throw InputError(where_, fmt::format("has points with {} and with {} coordinates; give all of them the same",
-                                                 curve_.dimension, dimension));
+            throw InputError(
+                where_, fmt::format("has points with {} and with {} coordinates; give all of them the same",
+                                    curve_.dimension, dimension));
         }
         curve_.coordinates.insert(curve_.coordinates.end(), point, point + dimension);
     }
@@ -54,7 +55,8 @@ class Collector {
     Polyline finish(bool closed) {
         auto& c = curve_.coordinates;
         const auto d = static_cast<std::size_t>(curve_.dimension);
-        if (c.size() >= 3 * d && std::equal(c.begin(), c.begin() + curve_.dimension, c.end() - curve_.dimension)) {
+        if (c.size() >= 3 * d &&
+            std::equal(c.begin(), c.begin() + curve_.dimension, c.end() - curve_.dimension)) {
             c.resize(c.size() - d);
             closed = true;
         }
@@ -71,7 +73,8 @@ class Collector {
 
 bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ','; }
 
-// --- text ---------------------------------------------------------------------------------------------------
+// --- text
+// ---------------------------------------------------------------------------------------------------
 
 std::vector<Polyline> parseText(const std::string& text, const std::string& name) {
     std::vector<Polyline> curves;
@@ -98,14 +101,18 @@ std::vector<Polyline> parseText(const std::string& text, const std::string& name
                                  fmt::format("'{}' is not a number; a line holds a point, as '12.5 -3'", at));
             }
             if (!std::isfinite(value)) {
-                throw InputError(fmt::format("{}: line {}", name, number), "holds a number that is not finite; remove the point");
+                throw InputError(fmt::format("{}: line {}", name, number),
+                                 "holds a number that is not finite; remove the point");
             }
-            if (count == 3) throw InputError(fmt::format("{}: line {}", name, number), "has more than 3 coordinates");
+            if (count == 3)
+                throw InputError(fmt::format("{}: line {}", name, number), "has more than 3 coordinates");
             point[count++] = value;
             at = end;
         }
         if (count == 0) continue;
-        if (count == 1) throw InputError(fmt::format("{}: line {}", name, number), "has 1 coordinate; a point has 2 or 3");
+        if (count == 1)
+            throw InputError(fmt::format("{}: line {}", name, number),
+                             "has 1 coordinate; a point has 2 or 3");
         collector.add(point, count);
     }
     if (!collector.empty()) curves.push_back(collector.finish(false));
@@ -126,7 +133,8 @@ std::string writeText(const std::vector<Polyline>& curves) {
     return text;
 }
 
-// --- GeoJSON ------------------------------------------------------------------------------------------------
+// --- GeoJSON
+// ------------------------------------------------------------------------------------------------
 
 struct GeoJsonReader {
     const std::string& name;
@@ -144,7 +152,8 @@ struct GeoJsonReader {
             }
             double point[3];
             for (std::size_t c = 0; c < position.size(); ++c) {
-                if (!position[c].is_number()) throw InputError(fmt::format("{}/{}/{}", place, k, c), "is not a number");
+                if (!position[c].is_number())
+                    throw InputError(fmt::format("{}/{}/{}", place, k, c), "is not a number");
                 point[c] = position[c].get<double>();
             }
             collector.add(point, static_cast<int>(position.size()));
@@ -186,7 +195,8 @@ Json toJson(const Polyline& curve) {
     return points;
 }
 
-// --- SVG ----------------------------------------------------------------------------------------------------
+// --- SVG
+// ----------------------------------------------------------------------------------------------------
 
 // Numbers and commands of a path's d, or of points.
 struct PathReader {
@@ -199,7 +209,8 @@ struct PathReader {
     }
     bool hasNumber() {
         skip();
-        return at < end && (std::isdigit(static_cast<unsigned char>(text[at])) || text[at] == '-' || text[at] == '+' || text[at] == '.');
+        return at < end && (std::isdigit(static_cast<unsigned char>(text[at])) || text[at] == '-' ||
+                            text[at] == '+' || text[at] == '.');
     }
     double number() {
         skip();
@@ -207,7 +218,8 @@ struct PathReader {
         const double value = std::strtod(text.c_str() + at, &after);
         const auto next = static_cast<std::size_t>(after - text.c_str());
         if (next == at || next > end || !std::isfinite(value)) {
-            throw InputError(where, fmt::format("has no number at '{}'", text.substr(at, std::min<std::size_t>(12, end - at))));
+            throw InputError(where, fmt::format("has no number at '{}'",
+                                                text.substr(at, std::min<std::size_t>(12, end - at))));
         }
         at = next;
         return value;
@@ -239,9 +251,13 @@ std::vector<Polyline> parsePath(PathReader in) {
                 y = startY;
                 continue;
             case 'H':
-            case 'h': x = in.number() + (relative ? x : 0); break;
+            case 'h':
+                x = in.number() + (relative ? x : 0);
+                break;
             case 'V':
-            case 'v': y = in.number() + (relative ? y : 0); break;
+            case 'v':
+                y = in.number() + (relative ? y : 0);
+                break;
             case 'M':
             case 'm':
             case 'L':
@@ -252,9 +268,10 @@ std::vector<Polyline> parsePath(PathReader in) {
                 break;
             }
             default:
-                throw InputError(in.where, fmt::format("has the command '{}'; only straight pieces (M L H V Z) are read: "
-                                                       "flatten curves first (Inkscape: Flatten Beziers)",
-                                                       command));
+                throw InputError(
+                    in.where, fmt::format("has the command '{}'; only straight pieces (M L H V Z) are read: "
+                                          "flatten curves first (Inkscape: Flatten Beziers)",
+                                          command));
         }
         if (command == 'M' || command == 'm') {
             flush(false);
@@ -376,7 +393,8 @@ CurveFile CurveFile::parse(const std::string& text, const std::string& extension
             const auto is = [&](const char* tag) {
                 const std::size_t length = std::char_traits<char>::length(tag);
                 return text.compare(at + 1, length, tag) == 0 && at + 1 + length < text.size() &&
-                       (std::isspace(static_cast<unsigned char>(text[at + 1 + length])) || text[at + 1 + length] == '/');
+                       (std::isspace(static_cast<unsigned char>(text[at + 1 + length])) ||
+                        text[at + 1 + length] == '/');
             };
             const bool path = is("path"), polyline = is("polyline"), polygon = is("polygon");
             if (!path && !polyline && !polygon) continue;
@@ -386,14 +404,19 @@ CurveFile CurveFile::parse(const std::string& text, const std::string& extension
             std::size_t valueBegin = 0, valueEnd = 0;
             if (!findAttribute(text, at, end, path ? "d" : "points", valueBegin, valueEnd)) continue;
             const PathReader in{text, valueBegin, valueEnd,
-                                fmt::format("{}: {} {}", name, path ? "path" : polygon ? "polygon" : "polyline", count)};
+                                fmt::format("{}: {} {}", name,
+                                            path      ? "path"
+                                            : polygon ? "polygon"
+                                                      : "polyline",
+                                            count)};
             const auto found = path ? parsePath(in) : parsePoints(in, polygon);
             source->attributes.push_back(
                 {valueBegin, valueEnd, file.curves_.size(), file.curves_.size() + found.size(), path});
             file.curves_.insert(file.curves_.end(), found.begin(), found.end());
         }
     } else {
-        throw InputError(name, "is of no kind that holds curves; they are .txt .xy .dat .csv .geojson .json .svg");
+        throw InputError(name,
+                         "is of no kind that holds curves; they are .txt .xy .dat .csv .geojson .json .svg");
     }
     if (file.curves_.empty()) throw InputError(name, "holds no curve");
     file.source_ = std::move(source);

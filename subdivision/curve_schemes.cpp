@@ -23,7 +23,8 @@ int openFineSize(const CurveScheme& scheme, int n) {
     return scheme.family == Family::DynLevinGregory ? 2 * n - 1 : 2 * n - scheme.degree;
 }
 
-// --- P of an open curve -------------------------------------------------------------------------------------
+// --- P of an open curve
+// -------------------------------------------------------------------------------------
 
 // Knots 0 .. n-degree in steps of 1/`steps`, the first and the last repeated degree + 1 times.
 std::vector<Rational> clampedKnots(int degree, int intervals, int steps) {
@@ -66,12 +67,13 @@ FiniteSubdivision openSubdivision(const CurveScheme& scheme, int n) {
     FiniteSubdivision p;
     for (int i = 0; i < openFineSize(scheme, n); ++i) {
         p.addRow(at(i), scheme.family == Family::DynLevinGregory ? fourPointRow(n, i)
-                                                                  : knotInsertionRow(scheme.degree, n, i));
+                                                                 : knotInsertionRow(scheme.degree, n, i));
     }
     return p;
 }
 
-// --- A, B, Q of an open curve -------------------------------------------------------------------------------
+// --- A, B, Q of an open curve
+// -------------------------------------------------------------------------------
 
 // Twice the position around which row j of A is centred, counted from the nearer end: the vertex node (cubic:
 // f0, f2, f3, f5, f7 ..; dlg: f0, f2, f4 ..) or, for Chaikin, the middle of the pair that the point becomes.
@@ -94,9 +96,10 @@ std::vector<Node> centredWindow(int fine, int twiceCentre, int reach) {
     return window;
 }
 
-// O(3). Moving a kept point by delta changes its own detail by -delta and that of the edge node k beside it by
-// -p_k delta. Least squares over the three gives delta = sum of p_k d_k / (1 + sum of p_k^2).
-Diagram refinedRow(const Diagram& column, Node vertex, const std::vector<std::pair<Node, Diagram>>& residuals) {
+// O(3). Moving a kept point by delta changes its own detail by -delta and that of the edge node k beside it
+// by -p_k delta. Least squares over the three gives delta = sum of p_k d_k / (1 + sum of p_k^2).
+Diagram refinedRow(const Diagram& column, Node vertex,
+                   const std::vector<std::pair<Node, Diagram>>& residuals) {
     Rational below = 1;
     for (const auto& [edge, b] : residuals) below += column[edge] * column[edge];
     Diagram row = Diagram::delta(vertex);
@@ -115,18 +118,22 @@ Diagram openA(const CurveScheme& scheme, const FiniteSubdivision& p, int n, int 
     const int fine = openFineSize(scheme, n), centre = twiceVertex(scheme, n, j);
     if (j == 0 || j == n - 1) return Diagram::delta(at(j == 0 ? 0 : fine - 1));
     if (scheme.fit == Fit::Refined) {
-        return refinedRow(p.column(at(j)), at(2 * j),
-                          {{at(2 * j - 1), residualRow(p, 2 * j - 1)}, {at(2 * j + 1), residualRow(p, 2 * j + 1)}});
+        return refinedRow(
+            p.column(at(j)), at(2 * j),
+            {{at(2 * j - 1), residualRow(p, 2 * j - 1)}, {at(2 * j + 1), residualRow(p, 2 * j + 1)}});
     }
-    // A four-point window needs no narrowing: the kept point alone solves AP = I, so every clipped one is feasible.
+    // A four-point window needs no narrowing: the kept point alone solves AP = I, so every clipped one is
+    // feasible.
     if (scheme.family == Family::DynLevinGregory) {
         std::vector<Node> window;
-        for (int i = std::max(0, 2 * j - scheme.width / 2); i <= std::min(fine - 1, 2 * j + scheme.width / 2); ++i) {
+        for (int i = std::max(0, 2 * j - scheme.width / 2); i <= std::min(fine - 1, 2 * j + scheme.width / 2);
+             ++i) {
             window.push_back(at(i));
         }
         return *leastNormRow(p, at(j), window);
     }
-    // Beside an end a narrow window may hold too little; it grows by a point on either side until it does not.
+    // Beside an end a narrow window may hold too little; it grows by a point on either side until it does
+    // not.
     for (int reach = scheme.width - 1;; reach += 2) {
         const auto window = centredWindow(fine, centre, reach);
         if (auto row = leastNormRow(p, at(j), window)) return *row;
@@ -140,7 +147,8 @@ Diagram openA(const CurveScheme& scheme, const FiniteSubdivision& p, int n, int 
     return *row;
 }
 
-// Twice the middle of row k of B, and the number of its taps: degree + 2, the (degree + 1)-th difference inside.
+// Twice the middle of row k of B, and the number of its taps: degree + 2, the (degree + 1)-th difference
+// inside.
 int twiceDetail(const CurveScheme& scheme, int k) {
     if (scheme.family == Family::DynLevinGregory) return 4 * k + 2;
     return scheme.degree == 2 ? 4 * k + 3 : 4 * k + 4;
@@ -175,7 +183,8 @@ Rational largest(const Diagram& diagram) {
     return best;
 }
 
-// --- doubles ------------------------------------------------------------------------------------------------
+// --- doubles
+// ------------------------------------------------------------------------------------------------
 
 FilterRow toRow(const Diagram& diagram, std::ptrdiff_t origin) {
     FilterRow row;
@@ -268,9 +277,14 @@ Diagram fourPointRow(int n, int i) {
     if (j == n - 2) return fourPointRow(n, 1).mirrored(at(n - 1));
     if (j == 0 && n == 3) return {{at(0), Rational(3, 8)}, {at(1), Rational(6, 8)}, {at(2), Rational(-1, 8)}};
     if (j == 0) {
-        return {{at(0), Rational(5, 16)}, {at(1), Rational(15, 16)}, {at(2), Rational(-5, 16)}, {at(3), Rational(1, 16)}};
+        return {{at(0), Rational(5, 16)},
+                {at(1), Rational(15, 16)},
+                {at(2), Rational(-5, 16)},
+                {at(3), Rational(1, 16)}};
     }
-    return {{at(j - 1), Rational(-1, 16)}, {at(j), Rational(9, 16)}, {at(j + 1), Rational(9, 16)},
+    return {{at(j - 1), Rational(-1, 16)},
+            {at(j), Rational(9, 16)},
+            {at(j + 1), Rational(9, 16)},
             {at(j + 2), Rational(-1, 16)}};
 }
 
@@ -284,8 +298,9 @@ CurveScheme curveScheme(std::string_view name) {
     const auto unknown = [&](const std::string& why) {
         std::string known;
         for (const auto& each : curveSchemeNames()) known += (known.empty() ? "" : ", ") + each;
-        return InputError("scheme '" + std::string(name) + "'", why + "; the known ones are " + known +
-                                                                    " (chaikin-W and cubic-W for other widths W)");
+        return InputError(
+            "scheme '" + std::string(name) + "'",
+            why + "; the known ones are " + known + " (chaikin-W and cubic-W for other widths W)");
     };
     CurveScheme scheme;
     scheme.name = name;
@@ -306,7 +321,8 @@ CurveScheme curveScheme(std::string_view name) {
     if (dash != std::string_view::npos) {
         const std::string_view digits = name.substr(dash + 1);
         const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), scheme.width);
-        if (read.ec != std::errc() || read.ptr != digits.data() + digits.size()) throw unknown("has no width");
+        if (read.ec != std::errc() || read.ptr != digits.data() + digits.size())
+            throw unknown("has no width");
         if (scheme.width > 41) throw unknown("is wider than 41 taps");
         // Says what is wrong with a width that does not exist.
         construct(scheme.mask, scheme.width);
@@ -334,12 +350,14 @@ Filters interiorFilters(const CurveScheme& scheme) {
 
 OpenSystem openSystem(const CurveScheme& scheme, int n) {
     if (scheme.family == Family::OwnMask) {
-        throw InputError("scheme '" + scheme.name + "'",
-                         "is for closed curves: a mask does not say what happens at an end; take a named scheme");
+        throw InputError(
+            "scheme '" + scheme.name + "'",
+            "is for closed curves: a mask does not say what happens at an end; take a named scheme");
     }
     if (n < fewestOpen(scheme)) {
-        throw InputError("scheme '" + scheme.name + "'", std::to_string(n) + " coarse points are too few for an open " +
-                                                             "curve; it needs " + std::to_string(fewestOpen(scheme)));
+        throw InputError("scheme '" + scheme.name + "'",
+                         std::to_string(n) + " coarse points are too few for an open " + "curve; it needs " +
+                             std::to_string(fewestOpen(scheme)));
     }
     const int fine = openFineSize(scheme, n);
     OpenSystem open{openSubdivision(scheme, n), {}, {}};
@@ -365,8 +383,9 @@ OpenSystem openSystem(const CurveScheme& scheme, int n) {
         }
     }
     const Proof proof = prove(open.system, static_cast<std::size_t>(fine));
-    if (!proof) throw InputError("scheme '" + scheme.name + "'", "has no filters for " + std::to_string(n) +
-                                                                     " coarse points: " + proof.failure);
+    if (!proof)
+        throw InputError("scheme '" + scheme.name + "'",
+                         "has no filters for " + std::to_string(n) + " coarse points: " + proof.failure);
     return open;
 }
 
@@ -396,7 +415,8 @@ CurveFilters::CurveFilters(const CurveScheme& scheme, bool closed) : scheme_(sch
         return;
     }
     // Sizes of their own until the two ends do not meet: then head, middle and tail serve every longer curve.
-    // (A product of two rows reads no further than both are wide, so what holds at this size holds at all above.)
+    // (A product of two rows reads no further than both are wide, so what holds at this size holds at all
+    // above.)
     for (int n = fewestOpen(scheme);; ++n) {
         const OpenSystem open = openSystem(scheme, n);
         if (auto maps = repeatingMaps(open, n)) {
@@ -408,7 +428,8 @@ CurveFilters::CurveFilters(const CurveScheme& scheme, bool closed) : scheme_(sch
 }
 
 std::size_t CurveFilters::fineSize(std::size_t n) const {
-    return closed_ ? 2 * n : static_cast<std::size_t>(openFineSize(scheme_, 0) + 2 * static_cast<std::ptrdiff_t>(n));
+    return closed_ ? 2 * n
+                   : static_cast<std::size_t>(openFineSize(scheme_, 0) + 2 * static_cast<std::ptrdiff_t>(n));
 }
 
 std::size_t CurveFilters::fewestCoarse() const {

@@ -1,23 +1,24 @@
 // The curve subdivisions that come with isowave, and their filters in doubles.
-// Bartels and Samavati (B): sections 4, 5. Olsen and Samavati, "A discrete approach to multiresolution curves and
-// surfaces" (O): section 5.
+// Bartels and Samavati (B): sections 4, 5. Olsen and Samavati, "A discrete approach to multiresolution curves
+// and surfaces" (O): section 5.
 //
 //   scheme         fine points: closed   open               A
 //   chaikin-W      2n                    2n - 2, n >= 3     least norm of W taps (W = 4, 8, 12, ..)
 //   cubic-W        2n                    2n - 3, n >= 4     least norm of W taps (W = 3, 7, 11, ..)
 //   dlg-trial      2n                    2n - 1, n >= 2     keeps every second point
-//   dlg-refined    2n                    2n - 1, n >= 2     O(3): moves a kept point to lessen the details beside it
-//   dlg-optimal    2n                    2n - 1, n >= 2     least norm of 9 taps
+//   dlg-refined    2n                    2n - 1, n >= 2     O(3): moves a kept point to lessen the details
+//   beside it dlg-optimal    2n                    2n - 1, n >= 2     least norm of 9 taps
 //
-// Open ends. chaikin and cubic are the B-splines whose first and last knot are repeated (3-fold, 4-fold), so the
-// curve begins at its first point; dlg is the four-point rule with the cubic (quadratic, linear) polynomial through
-// the points there are: first edge (5,15,-5,1)/16 for n >= 4, (3,6,-1)/8 for n = 3, the midpoint for n = 2.
-// A row of A near an end has the window of the interior, narrowed about its vertex node until it fits (B section 5).
+// Open ends. chaikin and cubic are the B-splines whose first and last knot are repeated (3-fold, 4-fold), so
+// the curve begins at its first point; dlg is the four-point rule with the cubic (quadratic, linear)
+// polynomial through the points there are: first edge (5,15,-5,1)/16 for n >= 4, (3,6,-1)/8 for n = 3, the
+// midpoint for n = 2. A row of A near an end has the window of the interior, narrowed about its vertex node
+// until it fits (B section 5).
 //
-// A size that the subdivision does not make (an odd number of closed points, say) is brought to one that it does
-// by a *virtual point*: one more point, placed where the last detail vanishes. That detail is then not stored,
-// and the point is dropped again in reconstruction, so what is stored is as much as there was. For the closed
-// cubic the point is (4(f[-1] + f[1]) - f[-2] - f[2])/6.
+// A size that the subdivision does not make (an odd number of closed points, say) is brought to one that it
+// does by a *virtual point*: one more point, placed where the last detail vanishes. That detail is then not
+// stored, and the point is dropped again in reconstruction, so what is stored is as much as there was. For
+// the closed cubic the point is (4(f[-1] + f[1]) - f[-2] - f[2])/6.
 #pragma once
 
 #include <cstddef>
@@ -73,15 +74,17 @@ struct FilterRow {
     std::vector<double> weights;
 };
 
-// A banded linear map that repeats. Outputs 0 .. head.size()-1 have rows of their own; the last tail.size() too,
-// with `first` counted from the end of the input; between them, output head.size() + q has the row q mod period
-// of `inner`, moved on by (q div period) * step. A closed map has neither head nor tail and wraps around.
+// A banded linear map that repeats. Outputs 0 .. head.size()-1 have rows of their own; the last tail.size()
+// too, with `first` counted from the end of the input; between them, output head.size() + q has the row q mod
+// period of `inner`, moved on by (q div period) * step. A closed map has neither head nor tail and wraps
+// around.
 struct FilterBank {
     std::vector<FilterRow> head, inner, tail;
     std::ptrdiff_t step = 1;
 };
 
-// The filters of a scheme for curves of any length, in doubles. Immutable once made: share it between threads.
+// The filters of a scheme for curves of any length, in doubles. Immutable once made: share it between
+// threads.
 class CurveFilters {
   public:
     // Derives and proves: some 10 to 300 ms for open curves.

@@ -8,9 +8,12 @@ namespace isowave::subdivision {
 
 const char* name(Lattice lattice) {
     switch (lattice) {
-        case Lattice::Line: return "line";
-        case Lattice::Triangular: return "triangular";
-        case Lattice::Quad: break;
+        case Lattice::Line:
+            return "line";
+        case Lattice::Triangular:
+            return "triangular";
+        case Lattice::Quad:
+            break;
     }
     return "quad";
 }
@@ -31,7 +34,8 @@ std::vector<Node> ring(Lattice lattice, Node centre, int k) {
         for (int s = 0; s < count; ++s, at = at + step) nodes.push_back(at);
     };
     if (lattice == Lattice::Triangular) {
-        for (Node step : {Node{1, -1}, Node{0, -1}, Node{-1, 0}, Node{-1, 1}, Node{0, 1}, Node{1, 0}}) walk(step, k);
+        for (Node step : {Node{1, -1}, Node{0, -1}, Node{-1, 0}, Node{-1, 1}, Node{0, 1}, Node{1, 0}})
+            walk(step, k);
     } else {
         walk({1, 0}, k);
         walk({0, -1}, 2 * k);
@@ -53,9 +57,12 @@ std::vector<Node> spiral(Lattice lattice, Node centre, int width) {
 
 std::vector<Node> detailNodes(Lattice lattice) {
     switch (lattice) {
-        case Lattice::Line: return {{1, 0}};
-        case Lattice::Triangular: return {{1, 0}, {0, 1}, {-1, 1}};
-        case Lattice::Quad: break;
+        case Lattice::Line:
+            return {{1, 0}};
+        case Lattice::Triangular:
+            return {{1, 0}, {0, 1}, {-1, 1}};
+        case Lattice::Quad:
+            break;
     }
     return {{1, 0}, {0, 1}, {1, 1}};
 }
@@ -92,7 +99,8 @@ void Diagram::add(const Diagram& other, const Rational& factor) {
 Diagram Diagram::shifted(Node by) const {
     Diagram moved;
     // The order of the nodes does not change under a shift, so each goes to the end.
-    for (const auto& [node, value] : values_) moved.values_.emplace_hint(moved.values_.end(), node + by, value);
+    for (const auto& [node, value] : values_)
+        moved.values_.emplace_hint(moved.values_.end(), node + by, value);
     return moved;
 }
 

@@ -1,9 +1,9 @@
 // Diagrams: values written on the nodes of a lattice (Bartels and Samavati, "Constructing biorthogonal
 // multiresolutions from any subdivision with diagrams", sections 4 to 7).
 //
-// A row of A or B and a column of P or Q all live on the *fine* nodes, so each is one diagram, and an entry of
-// a product such as AP is the inner product of two of them. No node is ever numbered: a diagram does not change
-// when points are renamed, and shifting a diagram by 2t is what moving it to the coarse node t means.
+// A row of A or B and a column of P or Q all live on the *fine* nodes, so each is one diagram, and an entry
+// of a product such as AP is the inner product of two of them. No node is ever numbered: a diagram does not
+// change when points are renamed, and shifting a diagram by 2t is what moving it to the coarse node t means.
 //
 //   lattice      node      neighbours                     drawn at             a ball of width w has
 //   Line         (x, 0)    +-(1,0)                        x                    2w + 1 nodes

@@ -11,7 +11,9 @@ namespace isowave::subdivision {
 
 namespace {
 
-std::string over(const Integer& denominator) { return denominator == 1 ? "" : "1/" + denominator.str() + " x"; }
+std::string over(const Integer& denominator) {
+    return denominator == 1 ? "" : "1/" + denominator.str() + " x";
+}
 
 std::string cell(const Rational& value, bool isCentre) {
     const std::string text = value == 0 ? "." : toString(value);
@@ -54,7 +56,8 @@ std::string planePicture(const Diagram& diagram, Lattice lattice, Node centre) {
         for (int x = first; x <= last; ++x) {
             const auto start = static_cast<std::size_t>(halfCells(lattice, {x, y}) - left) * widest / 2;
             row.resize(std::max(row.size(), start), ' ');
-            row += fmt::format("{:^{}}", cell(diagram[{x, y}] * Rational(denominator), Node{x, y} == centre), widest);
+            row += fmt::format("{:^{}}", cell(diagram[{x, y}] * Rational(denominator), Node{x, y} == centre),
+                               widest);
         }
         row.erase(row.find_last_not_of(' ') + 1);
         text += row + "\n";
@@ -82,14 +85,19 @@ std::vector<Named> all(const Filters& f) {
 
 const char* roleOf(char letter) {
     switch (letter) {
-        case 'P': return "column of P: what a coarse value adds to the fine ones";
-        case 'A': return "row of A: a coarse value from the fine ones";
-        case 'B': return "row of B: a detail from the fine values";
-        default: return "column of Q: what a detail adds to the fine values";
+        case 'P':
+            return "column of P: what a coarse value adds to the fine ones";
+        case 'A':
+            return "row of A: a coarse value from the fine ones";
+        case 'B':
+            return "row of B: a detail from the fine values";
+        default:
+            return "column of Q: what a detail adds to the fine values";
     }
 }
 
-// --- SVG ----------------------------------------------------------------------------------------------------
+// --- SVG
+// ----------------------------------------------------------------------------------------------------
 
 struct Point {
     double x, y;
@@ -103,9 +111,12 @@ Point place(Lattice lattice, Node n) {
 
 std::vector<Node> edgeSteps(Lattice lattice) {
     switch (lattice) {
-        case Lattice::Line: return {{1, 0}};
-        case Lattice::Triangular: return {{1, 0}, {0, 1}, {-1, 1}};
-        case Lattice::Quad: break;
+        case Lattice::Line:
+            return {{1, 0}};
+        case Lattice::Triangular:
+            return {{1, 0}, {0, 1}, {-1, 1}};
+        case Lattice::Quad:
+            break;
     }
     return {{1, 0}, {0, 1}};
 }
@@ -117,16 +128,21 @@ struct Panel {
 
 std::string fraction(const Rational& value, Point at) {
     const auto line = [&](const std::string& text, double dy, double size) {
-        return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"{:.1f}\">{}</text>\n",
-                           at.x, at.y + dy, size, text);
+        return fmt::format(
+            "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"{:.1f}\">{}</text>\n", at.x,
+            at.y + dy, size, text);
     };
-    const auto sizeFor = [](std::size_t letters) { return std::min(11.0, 50.0 / static_cast<double>(letters + 1)); };
+    const auto sizeFor = [](std::size_t letters) {
+        return std::min(11.0, 50.0 / static_cast<double>(letters + 1));
+    };
     const std::string above = Integer(numerator(value)).str(), below = Integer(denominator(value)).str();
     if (below == "1") return line(above, 4, sizeFor(above.size()));
     const double size = sizeFor(std::max(above.size(), below.size()));
     return line(above, -2, size) + line(below, size - 1, size) +
-           fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#222\" stroke-width=\"0.7\"/>\n",
-                       at.x - 12, at.y - 0.5, at.x + 12, at.y - 0.5);
+           fmt::format(
+               "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#222\" "
+               "stroke-width=\"0.7\"/>\n",
+               at.x - 12, at.y - 0.5, at.x + 12, at.y - 0.5);
 }
 
 Panel panel(const Diagram& diagram, Lattice lattice, Node centre, const std::string& title) {
@@ -163,23 +179,27 @@ Panel panel(const Diagram& diagram, Lattice lattice, Node centre, const std::str
                 const Point q = place(lattice, n + step);
                 // Half of a coarse edge: it begins or ends in a vertex node.
                 const bool coarse = isVertexNode(n) || isVertexNode(n + step);
-                (coarse ? thick : thin) += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n",
-                                                       p.x, p.y, q.x, q.y);
+                (coarse ? thick : thin) += fmt::format(
+                    "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", p.x, p.y, q.x, q.y);
             }
             const Rational value = diagram[n];
             if (value == 0 && n != centre) continue;
             const double strength = largest == 0 ? 0 : std::sqrt(std::abs(toDouble(value / largest)));
             const int fade = static_cast<int>(std::lround(255 - 150 * strength));
-            const std::string fill = value == 0   ? "#ffffff"
+            const std::string fill = value == 0  ? "#ffffff"
                                      : value > 0 ? fmt::format("#{:02x}{:02x}ff", fade, (fade + 255) / 2)
                                                  : fmt::format("#ff{:02x}{:02x}", fade, fade);
             const char* width = n == centre ? "2.5" : "0.8";
             if (isVertexNode(n)) {
-                marks += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"34\" height=\"34\" fill=\"{}\" stroke=\"#222\" stroke-width=\"{}\"/>\n",
-                                     p.x - 17, p.y - 17, fill, width);
+                marks += fmt::format(
+                    "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"34\" height=\"34\" fill=\"{}\" stroke=\"#222\" "
+                    "stroke-width=\"{}\"/>\n",
+                    p.x - 17, p.y - 17, fill, width);
             } else {
-                marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"18\" fill=\"{}\" stroke=\"#222\" stroke-width=\"{}\"/>\n",
-                                     p.x, p.y, fill, width);
+                marks += fmt::format(
+                    "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"18\" fill=\"{}\" stroke=\"#222\" "
+                    "stroke-width=\"{}\"/>\n",
+                    p.x, p.y, fill, width);
             }
             marks += fraction(value, p);
         }
@@ -188,8 +208,8 @@ Panel panel(const Diagram& diagram, Lattice lattice, Node centre, const std::str
     result.right += 30;
     result.top -= 56;
     result.bottom += 30;
-    result.body = "<g stroke=\"#bbb\" stroke-width=\"1\">\n" + thin + "</g>\n<g stroke=\"#888\" stroke-width=\"2.2\">\n" +
-                  thick + "</g>\n" + marks +
+    result.body = "<g stroke=\"#bbb\" stroke-width=\"1\">\n" + thin +
+                  "</g>\n<g stroke=\"#888\" stroke-width=\"2.2\">\n" + thick + "</g>\n" + marks +
                   fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"15\">{}</text>\n", result.left + 8,
                               result.top + 18, title);
     return result;
@@ -199,13 +219,15 @@ std::string page(const std::vector<Panel>& panels) {
     double y = 0, width = 0;
     std::string body;
     for (const auto& p : panels) {
-        body += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", -p.left, y - p.top, p.body);
+        body +=
+            fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", -p.left, y - p.top, p.body);
         y += p.bottom - p.top;
         width = std::max({width, p.right - p.left, 420.0});
     }
     return fmt::format(
                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.1f} {1:.1f}\" width=\"{0:.1f}\" "
-               "height=\"{1:.1f}\" font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+               "height=\"{1:.1f}\" font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" "
+               "fill=\"#fff\"/>\n",
                width, y) +
            body + "</svg>\n";
 }
@@ -239,7 +261,8 @@ std::string picture(const Diagram& diagram, Lattice lattice, Node centre) {
 
 std::string picture(const Filters& f) {
     const Proof proof = prove(f);
-    std::string text = fmt::format("{} on the {} lattice, A of width {}\n", f.mask.name, name(f.mask.lattice), f.width);
+    std::string text =
+        fmt::format("{} on the {} lattice, A of width {}\n", f.mask.name, name(f.mask.lattice), f.width);
     text += fmt::format("AP = I, BP = 0, AQ = 0, BQ = I: {} ({} products of diagrams, exact)\n",
                         proof ? "proved" : proof.failure, proof.products);
     for (const auto& [title, diagram, centre] : all(f)) {

@@ -37,7 +37,8 @@ Echelon eliminate(const Matrix& matrix) {
     e.rows = cleared(matrix);
     for (std::size_t k = 0; k < e.rows.size(); ++k) e.origin.push_back(k);
     const std::size_t width = matrix.empty() ? 0 : matrix[0].size();
-    std::size_t done = 0;  // invariant: rows [0, done) have their pivots, rows [done, end) are 0 left of column c
+    std::size_t done =
+        0;  // invariant: rows [0, done) have their pivots, rows [done, end) are 0 left of column c
     for (std::size_t c = 0; c < width && done < e.rows.size(); ++c) {
         std::size_t chosen = done;
         while (chosen < e.rows.size() && e.rows[chosen][c] == 0) ++chosen;

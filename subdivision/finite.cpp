@@ -14,8 +14,8 @@ std::string nth(const char* product, std::size_t row, std::size_t column, const 
            toString(found);
 }
 
-void check(Proof& proof, const char* product, const std::vector<Diagram>& rows, const std::vector<Diagram>& columns,
-           bool identity) {
+void check(Proof& proof, const char* product, const std::vector<Diagram>& rows,
+           const std::vector<Diagram>& columns, bool identity) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         for (std::size_t j = 0; j < columns.size(); ++j) {
             ++proof.products;
@@ -53,15 +53,16 @@ Proof prove(const System& s, std::size_t fineNodes) {
     check(proof, "BP", s.b, s.p, false);
     check(proof, "AQ", s.a, s.q, false);
     check(proof, "BQ", s.b, s.q, true);
-    if (proof.failure.empty() && (s.a.size() != s.p.size() || s.b.size() != s.q.size() ||
-                                  s.a.size() + s.b.size() != fineNodes)) {
+    if (proof.failure.empty() &&
+        (s.a.size() != s.p.size() || s.b.size() != s.q.size() || s.a.size() + s.b.size() != fineNodes)) {
         proof.failure = std::to_string(s.a.size()) + " coarse values and " + std::to_string(s.b.size()) +
                         " details do not make " + std::to_string(fineNodes) + " fine values";
     }
     return proof;
 }
 
-std::optional<Diagram> leastNormRow(const FiniteSubdivision& p, Node coarse, const std::vector<Node>& window) {
+std::optional<Diagram> leastNormRow(const FiniteSubdivision& p, Node coarse,
+                                    const std::vector<Node>& window) {
     std::set<Node> touching;
     for (const Node fine : window) {
         for (const auto& [node, weight] : p.row(fine)) touching.insert(node);
@@ -90,7 +91,8 @@ std::optional<Diagram> annihilator(const FiniteSubdivision& p, const std::vector
     return Diagram::on(window, basis[0]);
 }
 
-std::optional<Diagram> dualColumn(const std::vector<Diagram>& b, std::size_t k, const std::vector<Node>& window) {
+std::optional<Diagram> dualColumn(const std::vector<Diagram>& b, std::size_t k,
+                                  const std::vector<Node>& window) {
     Matrix e;
     std::vector<Rational> r;
     for (std::size_t l = 0; l < b.size(); ++l) {

@@ -1,5 +1,5 @@
-// Subdivisions of finite arrangements: open curves, patches with boundaries and corners, small tori. The rows of
-// P change near the ends, so every diagram is found for its own place; the algebra is that of construct.h.
+// Subdivisions of finite arrangements: open curves, patches with boundaries and corners, small tori. The rows
+// of P change near the ends, so every diagram is found for its own place; the algebra is that of construct.h.
 #pragma once
 
 #include <map>
@@ -44,7 +44,8 @@ std::optional<Diagram> leastNormRow(const FiniteSubdivision& p, Node coarse, con
 std::optional<Diagram> annihilator(const FiniteSubdivision& p, const std::vector<Node>& window);
 
 // A first column of Q: of least norm among those on `window` with b[k] q = 1 and b[l] q = 0 else.
-std::optional<Diagram> dualColumn(const std::vector<Diagram>& b, std::size_t k, const std::vector<Node>& window);
+std::optional<Diagram> dualColumn(const std::vector<Diagram>& b, std::size_t k,
+                                  const std::vector<Node>& window);
 
 // (I - P A) q
 Diagram lifted(const FiniteSubdivision& p, const std::vector<std::pair<Node, Diagram>>& a, const Diagram& q);

@@ -19,7 +19,8 @@ namespace {
 // The text between `'key': ` and the next comma outside brackets in the header's Python dictionary.
 std::string headerValue(const std::string& header, const std::string& key, const std::string& name) {
     const std::size_t found = header.find("'" + key + "':");
-    if (found == std::string::npos) throw InputError(name, "its header has no '" + key + "'; it is not a NumPy array");
+    if (found == std::string::npos)
+        throw InputError(name, "its header has no '" + key + "'; it is not a NumPy array");
     std::size_t at = found + key.size() + 3;
     std::string value;
     for (int depth = 0; at < header.size(); ++at) {
@@ -67,7 +68,9 @@ Element elementOf(const std::string& description, const std::string& name) {
         const bool swap = (description[1] == '>') != (std::endian::native == std::endian::big) &&
                           (description[1] == '<' || description[1] == '>');
         const std::string kind = description.substr(2, 2);
-        const auto make = [&]<class T>(T) { return Element{sizeof(T), [swap](const char* p) { return load<T>(p, swap); }}; };
+        const auto make = [&]<class T>(T) {
+            return Element{sizeof(T), [swap](const char* p) { return load<T>(p, swap); }};
+        };
         if (kind == "f8") return make(double{});
         if (kind == "f4") return make(float{});
         if (kind == "i1") return make(std::int8_t{});
@@ -79,8 +82,9 @@ Element elementOf(const std::string& description, const std::string& name) {
         if (kind == "u4") return make(std::uint32_t{});
         if (kind == "u8") return make(std::uint64_t{});
     }
-    throw InputError(name, "holds elements of type " + description +
-                               "; booleans, integers and floats of 4 or 8 bytes are read: save it with .astype(float)");
+    throw InputError(
+        name, "holds elements of type " + description +
+                  "; booleans, integers and floats of 4 or 8 bytes are read: save it with .astype(float)");
 }
 
 void requireFinite(const Grid& grid, const std::string& name) {
@@ -91,8 +95,10 @@ void requireFinite(const Grid& grid, const std::string& name) {
         first = k / grid.channels;
     }
     if (missing == 0) return;
-    throw InputError(name, fmt::format("{} of {} samples hold no finite number, the first at row {}, column {}; fill them or crop",
-                                       missing, grid.values.size(), first / grid.columns, first % grid.columns));
+    throw InputError(
+        name, fmt::format(
+                  "{} of {} samples hold no finite number, the first at row {}, column {}; fill them or crop",
+                  missing, grid.values.size(), first / grid.columns, first % grid.columns));
 }
 
 std::string readAll(const std::filesystem::path& path) {
@@ -113,8 +119,11 @@ Grid readGrid(const std::filesystem::path& path) {
 }
 
 Grid parseNpy(const std::string& bytes, const std::string& name) {
-    if (bytes.size() < 10 || bytes.compare(0, 6, "\x93NUMPY") != 0) throw InputError(name, "is not a NumPy array (.npy)");
-    const auto byte = [&](std::size_t k) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[k])); };
+    if (bytes.size() < 10 || bytes.compare(0, 6, "\x93NUMPY") != 0)
+        throw InputError(name, "is not a NumPy array (.npy)");
+    const auto byte = [&](std::size_t k) {
+        return static_cast<std::size_t>(static_cast<unsigned char>(bytes[k]));
+    };
     const std::size_t version = byte(6);
     if (version < 1 || version > 3 || (version > 1 && bytes.size() < 12)) {
         throw InputError(name, fmt::format("is a NumPy array of version {}; 1 to 3 are read", version));
@@ -130,7 +139,8 @@ Grid parseNpy(const std::string& bytes, const std::string& name) {
     const std::string shapeText = headerValue(header, "shape", name);
     const auto shape = shapeOf(shapeText, name);
     if (shape.size() < 2 || shape.size() > 3 || (shape.size() == 3 && (shape[2] < 1 || shape[2] > 4))) {
-        throw InputError(name, "has the shape " + shapeText + "; a grid has (rows, columns) or (rows, columns, 1 to 4)");
+        throw InputError(
+            name, "has the shape " + shapeText + "; a grid has (rows, columns) or (rows, columns, 1 to 4)");
     }
     Grid grid{shape[0], shape[1], shape.size() == 3 ? shape[2] : 1, {}};
     if (grid.rows < 2 || grid.columns < 2 || grid.rows > (1u << 20) || grid.columns > (1u << 20)) {
@@ -138,8 +148,8 @@ Grid parseNpy(const std::string& bytes, const std::string& name) {
     }
     const std::size_t count = grid.rows * grid.columns * grid.channels, have = bytes.size() - start - length;
     if (have < count * element.size) {
-        throw InputError(name, fmt::format("shape {} needs {} bytes but the file holds {}; it is truncated", shapeText,
-                                           count * element.size, have));
+        throw InputError(name, fmt::format("shape {} needs {} bytes but the file holds {}; it is truncated",
+                                           shapeText, count * element.size, have));
     }
     const char* const data = bytes.data() + start + length;
     grid.values.resize(count);
@@ -166,26 +176,33 @@ Grid parseAsc(const std::string& text, const std::string& name) {
         if (!(in >> word >> value)) throw InputError(name, "its header line '" + word + "' has no number");
         for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         if (word == "ncols" || word == "nrows") {
-            if (!(value >= 2 && value <= 1 << 20)) throw InputError(name, fmt::format("'{}' says {}; from 2 to 2^20 are read", word, value));
+            if (!(value >= 2 && value <= 1 << 20))
+                throw InputError(name, fmt::format("'{}' says {}; from 2 to 2^20 are read", word, value));
             (word == "ncols" ? grid.columns : grid.rows) = static_cast<std::size_t>(value);
         }
         if (word == "nodata_value") noData = value;
     }
-    if (grid.rows == 0 || grid.columns == 0) throw InputError(name, "has no 'ncols' or no 'nrows'; it is not an ESRI ASCII grid");
+    if (grid.rows == 0 || grid.columns == 0)
+        throw InputError(name, "has no 'ncols' or no 'nrows'; it is not an ESRI ASCII grid");
     const std::size_t count = grid.rows * grid.columns;
     std::size_t missing = 0, first = 0;
     for (std::size_t k = 0; k < count; ++k) {
         double value = 0;
         if (!(in >> value)) {
-            throw InputError(name, fmt::format("'ncols' and 'nrows' say {} samples but {} can be read; it is truncated or holds text",
-                                               count, k));
+            throw InputError(
+                name,
+                fmt::format(
+                    "'ncols' and 'nrows' say {} samples but {} can be read; it is truncated or holds text",
+                    count, k));
         }
         if (value == noData && missing++ == 0) first = k;
         grid.values.push_back(value);
     }
     if (missing > 0) {
-        throw InputError(name, fmt::format("{} of {} samples are without data, the first at row {}, column {}; fill them or crop",
-                                           missing, count, first / grid.columns, first % grid.columns));
+        throw InputError(
+            name, fmt::format(
+                      "{} of {} samples are without data, the first at row {}, column {}; fill them or crop",
+                      missing, count, first / grid.columns, first % grid.columns));
     }
     requireFinite(grid, name);
     return grid;
@@ -196,7 +213,8 @@ std::string npyBytes(const Grid& grid) {
                                   ? fmt::format("({}, {})", grid.rows, grid.columns)
                                   : fmt::format("({}, {}, {})", grid.rows, grid.columns, grid.channels);
     const char* order = std::endian::native == std::endian::big ? ">" : "<";
-    std::string header = fmt::format("{{'descr': '{}f8', 'fortran_order': False, 'shape': {}, }}", order, shape);
+    std::string header =
+        fmt::format("{{'descr': '{}f8', 'fortran_order': False, 'shape': {}, }}", order, shape);
     while ((10 + header.size() + 1) % 64 != 0) header += ' ';
     header += '\n';
     std::string bytes = "\x93NUMPY\x01";

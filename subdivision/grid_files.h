@@ -17,10 +17,12 @@ struct Grid {
     }
 };
 
-// .npy: two axes (heights), or three with at most four channels last; booleans, integers up to 64 bits and floats of
+// .npy: two axes (heights), or three with at most four channels last; booleans, integers up to 64 bits and
+// floats of
 //   32 or 64, either byte order, C or Fortran order.
 // .asc: ESRI ASCII grid (ncols, nrows, xll.., yll.., cellsize, NODATA_value, then the rows from the top).
-// Throws InputError: truncated, another type or shape, samples without data (how many, and where the first is).
+// Throws InputError: truncated, another type or shape, samples without data (how many, and where the first
+// is).
 Grid readGrid(const std::filesystem::path& path);
 Grid parseNpy(const std::string& bytes, const std::string& name);
 Grid parseAsc(const std::string& text, const std::string& name);

@@ -14,15 +14,20 @@ Diagram onLine(int first, const std::vector<Rational>& taps) {
 }
 
 // A column of P gathers what each fine node takes from the coarse node 0: for the fine node n the rows are
-// "n gets weight w from the coarse node at fine position n - offset". So a rule for the edge node along direction
-// `along` is written once and turned by the lattice's symmetries.
+// "n gets weight w from the coarse node at fine position n - offset". So a rule for the edge node along
+// direction `along` is written once and turned by the lattice's symmetries.
 Diagram butterflyColumn() {
     const Rational w(1, 16);
-    // Every edge node e, at the middle of the coarse edge from u to v: 1/2 on u, v; 2w on the two opposite nodes;
-    // -w on the four wings. Offsets are from the edge node, in fine steps, for the edge along (1,0).
-    const std::vector<std::pair<Node, Rational>> rule = {
-        {{-1, 0}, Rational(1, 2)}, {{1, 0}, Rational(1, 2)}, {{-1, 2}, 2 * w}, {{1, -2}, 2 * w},
-        {{-3, 2}, -w},             {{1, 2}, -w},             {{3, -2}, -w},    {{-1, -2}, -w}};
+    // Every edge node e, at the middle of the coarse edge from u to v: 1/2 on u, v; 2w on the two opposite
+    // nodes; -w on the four wings. Offsets are from the edge node, in fine steps, for the edge along (1,0).
+    const std::vector<std::pair<Node, Rational>> rule = {{{-1, 0}, Rational(1, 2)},
+                                                         {{1, 0}, Rational(1, 2)},
+                                                         {{-1, 2}, 2 * w},
+                                                         {{1, -2}, 2 * w},
+                                                         {{-3, 2}, -w},
+                                                         {{1, 2}, -w},
+                                                         {{3, -2}, -w},
+                                                         {{-1, -2}, -w}};
     Diagram p = Diagram::delta({0, 0});
     // Turns by 60 degrees: (x, y) -> (-y, x + y). Three edge directions: none, one and two turns.
     const auto turned = [](Node n, int times) {
@@ -113,7 +118,8 @@ Mask customMask(Lattice lattice, const std::vector<Rational>& values) {
         const auto nodes = spiral(lattice, {}, width);
         for (std::size_t k = 0; k < values.size(); ++k) mask.p.add(nodes[k], values[k]);
     }
-    if (mask.p.empty()) throw InputError("mask", "has no tap other than 0; give at least one, as in '1/4 3/4 3/4 1/4'");
+    if (mask.p.empty())
+        throw InputError("mask", "has no tap other than 0; give at least one, as in '1/4 3/4 3/4 1/4'");
     return mask;
 }
 

@@ -31,10 +31,14 @@ int Patch::low(int j) const { return kind_ == Kind::Hexagon ? std::max(-a_, -a_ 
 
 int Patch::high(int j) const {
     switch (kind_) {
-        case Kind::Parallelogram: return a_;
-        case Kind::Triangle: return a_ - j;
-        case Kind::Hexagon: return std::min(a_, a_ - j);
-        case Kind::Torus: break;
+        case Kind::Parallelogram:
+            return a_;
+        case Kind::Triangle:
+            return a_ - j;
+        case Kind::Hexagon:
+            return std::min(a_, a_ - j);
+        case Kind::Torus:
+            break;
     }
     return a_ - 1;
 }
@@ -68,10 +72,17 @@ std::array<int, 6> Patch::distances(Node n) const {
     std::array<int, 6> d;
     d.fill(kFar);
     switch (kind_) {
-        case Kind::Parallelogram: d = {n.x, a_ - n.x, n.y, b_ - n.y, kFar, kFar}; break;
-        case Kind::Triangle: d = {n.x, kFar, n.y, kFar, kFar, a_ - n.x - n.y}; break;
-        case Kind::Hexagon: d = {a_ + n.x, a_ - n.x, a_ + n.y, a_ - n.y, a_ + n.x + n.y, a_ - n.x - n.y}; break;
-        case Kind::Torus: break;
+        case Kind::Parallelogram:
+            d = {n.x, a_ - n.x, n.y, b_ - n.y, kFar, kFar};
+            break;
+        case Kind::Triangle:
+            d = {n.x, kFar, n.y, kFar, kFar, a_ - n.x - n.y};
+            break;
+        case Kind::Hexagon:
+            d = {a_ + n.x, a_ - n.x, a_ + n.y, a_ - n.y, a_ + n.x + n.y, a_ - n.x - n.y};
+            break;
+        case Kind::Torus:
+            break;
     }
     return d;
 }
@@ -79,10 +90,14 @@ std::array<int, 6> Patch::distances(Node n) const {
 std::string Patch::name() const {
     const std::string a = std::to_string(a_), b = std::to_string(b_);
     switch (kind_) {
-        case Kind::Parallelogram: return "parallelogram " + a + " x " + b;
-        case Kind::Triangle: return "triangle " + a;
-        case Kind::Hexagon: return "hexagon " + a;
-        case Kind::Torus: break;
+        case Kind::Parallelogram:
+            return "parallelogram " + a + " x " + b;
+        case Kind::Triangle:
+            return "triangle " + a;
+        case Kind::Hexagon:
+            return "hexagon " + a;
+        case Kind::Torus:
+            break;
     }
     return "torus " + a + " x " + b;
 }

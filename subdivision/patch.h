@@ -5,8 +5,8 @@
 //   hexagon(n)            |i|, |j|, |i + j| <= n
 //   torus(a, b)           i mod a, j mod b: no side
 //
-// Subdividing doubles the numbers: the fine node 2t of a coarse node t is its vertex node, the others lie in the
-// middle of coarse edges. Nodes are stored row by row (j from low to high, in a row i from low to high).
+// Subdividing doubles the numbers: the fine node 2t of a coarse node t is its vertex node, the others lie in
+// the middle of coarse edges. Nodes are stored row by row (j from low to high, in a row i from low to high).
 #pragma once
 
 #include <array>
@@ -44,7 +44,8 @@ class Patch {
     int high(int j) const;
     // REQUIRES: contains(node), and on a torus wrapped(node) == node.
     std::size_t index(Node node) const {
-        return starts_[static_cast<std::size_t>(node.y - rowLow_)] + static_cast<std::size_t>(node.x - low(node.y));
+        return starts_[static_cast<std::size_t>(node.y - rowLow_)] +
+               static_cast<std::size_t>(node.x - low(node.y));
     }
     std::vector<Node> nodes() const;
     // The nodes that are no vertex nodes, in the order of nodes(): where details sit.

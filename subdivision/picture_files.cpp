@@ -24,8 +24,9 @@ std::string lastLine(const itk::ExceptionObject& error) {
     return text.substr(text.find_last_of('\n') + 1);
 }
 
-// libpng by itself: ITK's reader lets an exception fly through libpng's C frames when a file is truncated, which
-// ends the program. 16-bit files keep their 16 bits; colours become luminance; nothing is done to gamma.
+// libpng by itself: ITK's reader lets an exception fly through libpng's C frames when a file is truncated,
+// which ends the program. 16-bit files keep their 16 bits; colours become luminance; nothing is done to
+// gamma.
 Grid readPng(const std::filesystem::path& path) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -77,24 +78,27 @@ Grid readTiff(const std::filesystem::path& path) {
 Grid readPictureOrGrid(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     if (extension != ".png" && extension != ".tif" && extension != ".tiff") return readGrid(path);
-    if (!std::filesystem::exists(path)) throw InputError(path.string(), "cannot be opened; is the name right?");
+    if (!std::filesystem::exists(path))
+        throw InputError(path.string(), "cannot be opened; is the name right?");
     const Grid grid = extension == ".png" ? readPng(path) : readTiff(path);
-    if (grid.rows < 2 || grid.columns < 2) throw InputError(path.string(), "has fewer than 2 rows or columns");
+    if (grid.rows < 2 || grid.columns < 2)
+        throw InputError(path.string(), "has fewer than 2 rows or columns");
     for (std::size_t k = 0; k < grid.values.size(); ++k) {
         if (std::isfinite(grid.values[k])) continue;
-        throw InputError(path.string(), "the sample at row " + std::to_string(k / grid.columns) + ", column " +
-                                            std::to_string(k % grid.columns) + " is not finite; fill such gaps before");
+        throw InputError(path.string(), "the sample at row " + std::to_string(k / grid.columns) +
+                                            ", column " + std::to_string(k % grid.columns) +
+                                            " is not finite; fill such gaps before");
     }
     return grid;
 }
 
-void writePng(const std::filesystem::path& path, const Grid& grid, double black, double white) {
+std::string pngBytes(const Grid& grid, double black, double white) {
     const double scale = white > black ? 255 / (white - black) : 0;
-    std::vector<std::uint8_t> bytes(grid.rows * grid.columns);
-    for (std::size_t k = 0; k < bytes.size(); ++k) {
+    std::vector<std::uint8_t> grey(grid.rows * grid.columns);
+    for (std::size_t k = 0; k < grey.size(); ++k) {
         const double value = grid.values[k * grid.channels];
-        const double grey = std::isfinite(value) ? std::clamp((value - black) * scale, 0.0, 255.0) : 255.0;
-        bytes[k] = static_cast<std::uint8_t>(std::lround(grey));
+        const double level = std::isfinite(value) ? std::clamp((value - black) * scale, 0.0, 255.0) : 255.0;
+        grey[k] = static_cast<std::uint8_t>(std::lround(level));
     }
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -102,16 +106,23 @@ void writePng(const std::filesystem::path& path, const Grid& grid, double black,
     image.height = static_cast<png_uint_32>(grid.rows);
     image.format = PNG_FORMAT_GRAY;
     png_alloc_size_t size = 0;
-    std::vector<char> file;
-    if (png_image_write_get_memory_size(image, size, 0, bytes.data(), 0, nullptr)) {
+    std::string file;
+    bool done = png_image_write_get_memory_size(image, size, 0, grey.data(), 0, nullptr);
+    if (done) {
         file.resize(size);
-        png_image_write_to_memory(&image, file.data(), &size, 0, bytes.data(), 0, nullptr);
+        done = png_image_write_to_memory(&image, file.data(), &size, 0, grey.data(), 0, nullptr);
     }
     const std::string message = image.message;
     png_image_free(&image);
-    if (file.empty() || size == 0) throw OperationError(path.string(), "cannot be written as PNG: " + message);
+    if (!done) throw OperationError("picture", "cannot be made a PNG: " + message);
+    file.resize(size);
+    return file;
+}
+
+void writePng(const std::filesystem::path& path, const Grid& grid, double black, double white) {
+    const std::string bytes = pngBytes(grid, black, white);
     AtomicFile place(path);
-    place.stream().write(file.data(), static_cast<std::streamsize>(size));
+    place.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     place.commit();
 }
 

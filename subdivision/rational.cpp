@@ -23,7 +23,8 @@ Rational parseDecimal(std::string_view& rest, std::string_view whole) {
     Integer digits = 0, scale = 1;
     int count = 0;
     bool point = false;
-    while (!rest.empty() && (std::isdigit(static_cast<unsigned char>(rest[0])) || (rest[0] == '.' && !point))) {
+    while (!rest.empty() &&
+           (std::isdigit(static_cast<unsigned char>(rest[0])) || (rest[0] == '.' && !point))) {
         if (rest[0] == '.') {
             point = true;
         } else {

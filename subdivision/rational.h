@@ -1,5 +1,5 @@
-// Exact numbers. Filters are derived in rationals and become doubles at the very end: the least-norm rows of a
-// triangular lattice near a boundary have denominators of 5e17 and more, which no float would carry.
+// Exact numbers. Filters are derived in rationals and become doubles at the very end: the least-norm rows of
+// a triangular lattice near a boundary have denominators of 5e17 and more, which no float would carry.
 #pragma once
 
 #include <boost/multiprecision/gmp.hpp>
@@ -17,7 +17,8 @@ using Rational =
 // "23/196", "-4", "0.0625" and "1.5/2" exactly; nothing is rounded. Throws InputError naming `text`.
 Rational parseRational(std::string_view text);
 
-// Numbers separated by spaces or commas: "1/8 1/2 3/4 1/2 1/8". Throws InputError with the place of a bad one.
+// Numbers separated by spaces or commas: "1/8 1/2 3/4 1/2 1/8". Throws InputError with the place of a bad
+// one.
 std::vector<Rational> parseRationals(std::string_view text);
 
 // "23/196"; "-4" when the denominator is 1.

@@ -16,7 +16,8 @@ std::size_t middle(std::size_t have, std::size_t count) { return (have - count) 
 
 [[noreturn]] void refuse(const Grid& grid, int levels, const std::string& needed) {
     throw InputError("grid", "of " + std::to_string(grid.rows) + " x " + std::to_string(grid.columns) +
-                                 " samples is too small for " + std::to_string(levels) + " levels; they need " + needed);
+                                 " samples is too small for " + std::to_string(levels) +
+                                 " levels; they need " + needed);
 }
 
 SurfaceField rowsField(const Grid& grid, int levels) {
@@ -24,11 +25,14 @@ SurfaceField rowsField(const Grid& grid, int levels) {
     const std::size_t a = (grid.columns - 1) / unit * unit, b = (grid.rows - 1) / unit * unit;
     const std::string side = std::to_string(unit + 1);
     if (a == 0 || b == 0) refuse(grid, levels, side + " x " + side);
-    SurfaceField field{Patch::parallelogram(static_cast<int>(a), static_cast<int>(b)), static_cast<int>(grid.channels), {}};
+    SurfaceField field{
+        Patch::parallelogram(static_cast<int>(a), static_cast<int>(b)), static_cast<int>(grid.channels), {}};
     const std::size_t row0 = middle(grid.rows, b + 1), column0 = middle(grid.columns, a + 1);
     for (std::size_t r = 0; r <= b; ++r) {
-        const auto from = grid.values.begin() + static_cast<std::ptrdiff_t>(((row0 + r) * grid.columns + column0) * grid.channels);
-        field.values.insert(field.values.end(), from, from + static_cast<std::ptrdiff_t>((a + 1) * grid.channels));
+        const auto from = grid.values.begin() +
+                          static_cast<std::ptrdiff_t>(((row0 + r) * grid.columns + column0) * grid.channels);
+        field.values.insert(field.values.end(), from,
+                            from + static_cast<std::ptrdiff_t>((a + 1) * grid.channels));
     }
     return field;
 }
@@ -37,12 +41,16 @@ SurfaceField rowsField(const Grid& grid, int levels) {
 SurfaceField quincunxField(const Grid& grid, int levels) {
     const std::size_t unit = std::size_t{1} << levels;
     const std::size_t n = std::min((grid.rows - 1) / 2, (grid.columns - 1) / 4) / unit * unit;
-    if (n == 0) refuse(grid, levels, std::to_string(2 * unit + 1) + " rows and " + std::to_string(4 * unit + 1) + " columns");
+    if (n == 0)
+        refuse(grid, levels,
+               std::to_string(2 * unit + 1) + " rows and " + std::to_string(4 * unit + 1) + " columns");
     SurfaceField field{Patch::hexagon(static_cast<int>(n)), static_cast<int>(grid.channels), {}};
-    const std::size_t row0 = middle(grid.rows, 2 * n + 1) + n, column0 = middle(grid.columns, 4 * n + 1) + 2 * n;
+    const std::size_t row0 = middle(grid.rows, 2 * n + 1) + n,
+                      column0 = middle(grid.columns, 4 * n + 1) + 2 * n;
     for (const Node node : field.patch.nodes()) {
         const auto row = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row0) + node.y);
-        const auto column = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(column0) + 2 * node.x + node.y);
+        const auto column =
+            static_cast<std::size_t>(static_cast<std::ptrdiff_t>(column0) + 2 * node.x + node.y);
         for (std::size_t c = 0; c < grid.channels; ++c) field.values.push_back(grid.at(row, column, c));
     }
     return field;
@@ -54,7 +62,8 @@ Grid quincunxPicture(const SurfaceField& field) {
     Grid grid{static_cast<std::size_t>(2 * n + 1), static_cast<std::size_t>(4 * n + 1), channels, {}};
     grid.values.assign(grid.rows * grid.columns * channels, std::numeric_limits<double>::quiet_NaN());
     const auto place = [&](Node node) {
-        return (static_cast<std::size_t>(node.y + n) * grid.columns + static_cast<std::size_t>(2 * node.x + node.y + 2 * n)) *
+        return (static_cast<std::size_t>(node.y + n) * grid.columns +
+                static_cast<std::size_t>(2 * node.x + node.y + 2 * n)) *
                channels;
     };
     for (const Node node : field.patch.nodes()) {
@@ -63,7 +72,8 @@ Grid quincunxPicture(const SurfaceField& field) {
         for (std::size_t c = 0; c < channels; ++c) {
             grid.values[place(node) + c] = field.values[from + c];
             if (hasNext) {
-                grid.values[place(node) + channels + c] = 0.5 * (field.values[from + c] + field.values[from + channels + c]);
+                grid.values[place(node) + channels + c] =
+                    0.5 * (field.values[from + c] + field.values[from + channels + c]);
             }
         }
     }
@@ -73,7 +83,8 @@ Grid quincunxPicture(const SurfaceField& field) {
 }  // namespace
 
 SurfaceField reliefField(const Grid& grid, ReliefLayout layout, int levels) {
-    if (levels < 0 || levels > 24) throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 to 24");
+    if (levels < 0 || levels > 24)
+        throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 to 24");
     return layout == ReliefLayout::Rows ? rowsField(grid, levels) : quincunxField(grid, levels);
 }
 
@@ -109,7 +120,8 @@ Grid shaded(const Grid& heights, double slope) {
             const double dx = (height(r, right) - height(r, left)) / static_cast<double>(right - left);
             const double dy = (height(down, c) - height(up, c)) / static_cast<double>(down - up);
             // normal (-dx, -dy, 1), light from (-1, -1, 1.4)
-            const double dot = (dx + dy + 1.4) / (std::sqrt(dx * dx + dy * dy + 1) * std::sqrt(1 + 1 + 1.4 * 1.4));
+            const double dot =
+                (dx + dy + 1.4) / (std::sqrt(dx * dx + dy * dy + 1) * std::sqrt(1 + 1 + 1.4 * 1.4));
             light.values[r * light.columns + c] = std::isnan(dot) ? dot : std::max(0.0, dot);
         }
     }

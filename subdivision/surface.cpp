@@ -16,7 +16,8 @@ namespace {
 using Family = SurfaceScheme::Family;
 constexpr Lattice kLattice = Lattice::Triangular;
 
-// --- where a node is ----------------------------------------------------------------------------------------
+// --- where a node is
+// ----------------------------------------------------------------------------------------
 
 int sidesAt(const Patch& patch, Node node) {
     int count = 0;
@@ -34,7 +35,8 @@ int commonSide(const Patch& patch, std::initializer_list<Node> nodes) {
     return -1;
 }
 
-// A side, seen from one of its nodes: the step along it, and how many steps there are either way to the corners.
+// A side, seen from one of its nodes: the step along it, and how many steps there are either way to the
+// corners.
 struct SidePlace {
     Node step;
     int before = 0, after = 0;
@@ -54,12 +56,15 @@ SidePlace placeOnSide(const Patch& patch, Node node) {
     const int side = commonSide(patch, {node});
     assert(side >= 0);
     SidePlace place{directionOfSide(side)};
-    while (place.before < kFarAlongSide && patch.contains(node - (place.before + 1) * place.step)) ++place.before;
-    while (place.after < kFarAlongSide && patch.contains(node + (place.after + 1) * place.step)) ++place.after;
+    while (place.before < kFarAlongSide && patch.contains(node - (place.before + 1) * place.step))
+        ++place.before;
+    while (place.after < kFarAlongSide && patch.contains(node + (place.after + 1) * place.step))
+        ++place.after;
     return place;
 }
 
-// --- P ------------------------------------------------------------------------------------------------------
+// --- P
+// ------------------------------------------------------------------------------------------------------
 
 // The coarse edge in whose middle a fine node lies.
 struct Edge {
@@ -135,7 +140,8 @@ Diagram maskRow(const Mask& mask, Node fine) {
     return row;
 }
 
-// --- A ------------------------------------------------------------------------------------------------------
+// --- A
+// ------------------------------------------------------------------------------------------------------
 
 FiniteSubdivision around(const SurfaceScheme& scheme, const Patch& coarse, const std::vector<Node>& window) {
     // The rows on the window: all that the equations of A see.
@@ -144,7 +150,8 @@ FiniteSubdivision around(const SurfaceScheme& scheme, const Patch& coarse, const
     return p;
 }
 
-Diagram leastNorm(const SurfaceScheme& scheme, const Patch& coarse, Node node, const std::vector<Node>& window) {
+Diagram leastNorm(const SurfaceScheme& scheme, const Patch& coarse, Node node,
+                  const std::vector<Node>& window) {
     const auto row = leastNormRow(around(scheme, coarse, window), node, window);
     if (!row) {
         throw InputError(scheme.name, "no A of this width exists at node (" + std::to_string(node.x) + "," +
@@ -177,16 +184,21 @@ std::vector<Node> ballWindow(const Patch& fine, Node node, int width, bool oneTa
     return window;
 }
 
-Diagram rowOfA(const SurfaceScheme& scheme, const Patch& coarse, Node node, int width, int steps, bool oneTap) {
+Diagram rowOfA(const SurfaceScheme& scheme, const Patch& coarse, Node node, int width, int steps,
+               bool oneTap) {
     const Patch fine = coarse.refined();
     switch (sidesAt(coarse, node)) {
-        case 0: return leastNorm(scheme, coarse, node, ballWindow(fine, node, width, oneTap));
-        case 1: return leastNorm(scheme, coarse, node, sideWindow(fine, placeOnSide(coarse, node), node, steps));
-        default: return Diagram::delta(2 * node);  // a corner is kept
+        case 0:
+            return leastNorm(scheme, coarse, node, ballWindow(fine, node, width, oneTap));
+        case 1:
+            return leastNorm(scheme, coarse, node, sideWindow(fine, placeOnSide(coarse, node), node, steps));
+        default:
+            return Diagram::delta(2 * node);  // a corner is kept
     }
 }
 
-// --- systems ------------------------------------------------------------------------------------------------
+// --- systems
+// ------------------------------------------------------------------------------------------------
 
 Diagram wrapped(const Diagram& diagram, const Patch& patch) {
     Diagram result;
@@ -203,14 +215,15 @@ std::string knownSchemes() {
 }  // namespace
 
 const std::vector<std::string>& surfaceSchemeNames() {
-    static const std::vector<std::string> names = {"butterfly-trivial", "butterfly-3", "butterfly-4", "loop-1",
-                                                   "loop-3"};
+    static const std::vector<std::string> names = {"butterfly-trivial", "butterfly-3", "butterfly-4",
+                                                   "loop-1", "loop-3"};
     return names;
 }
 
 SurfaceScheme surfaceScheme(std::string_view name) {
     const auto unknown = [&](const std::string& why) {
-        return InputError("scheme '" + std::string(name) + "'", why + "; the known ones are " + knownSchemes());
+        return InputError("scheme '" + std::string(name) + "'",
+                          why + "; the known ones are " + knownSchemes());
     };
     SurfaceScheme scheme;
     scheme.name = name;
@@ -224,7 +237,8 @@ SurfaceScheme surfaceScheme(std::string_view name) {
         return scheme;
     }
     const std::size_t dash = name.find('-');
-    const std::string_view base = name.substr(0, dash), width = dash == name.npos ? "" : name.substr(dash + 1);
+    const std::string_view base = name.substr(0, dash),
+                           width = dash == name.npos ? "" : name.substr(dash + 1);
     if (base != "butterfly" && base != "loop") throw unknown("is not known");
     scheme.family = base == "loop" ? Family::LoopLike : Family::Butterfly;
     scheme.mask = namedMask(base);
@@ -237,7 +251,8 @@ SurfaceScheme surfaceScheme(std::string_view name) {
         const auto read = std::from_chars(width.data(), width.data() + width.size(), scheme.width);
         const int least = base == "loop" ? 1 : 0;
         if (read.ec != std::errc() || read.ptr != width.data() + width.size()) throw unknown("has no width");
-        if (scheme.width < least || scheme.width > 4) throw unknown("has a width outside " + std::to_string(least) + " to 4");
+        if (scheme.width < least || scheme.width > 4)
+            throw unknown("has a width outside " + std::to_string(least) + " to 4");
     }
     return scheme;
 }
@@ -255,8 +270,10 @@ Diagram surfaceRowOfP(const SurfaceScheme& scheme, const Patch& coarse, Node fin
         const Node step = directionOfSide(side);
         const Node first = coarse.contains(edge.u) && edge.v - edge.u == step ? edge.u : edge.v;
         SidePlace place{step};
-        while (place.before < kFarAlongSide && coarse.contains(first - (place.before + 1) * step)) ++place.before;
-        while (place.after < kFarAlongSide && coarse.contains(first + (place.after + 1) * step)) ++place.after;
+        while (place.before < kFarAlongSide && coarse.contains(first - (place.before + 1) * step))
+            ++place.before;
+        while (place.after < kFarAlongSide && coarse.contains(first + (place.after + 1) * step))
+            ++place.after;
         const Diagram line = sideRule(scheme)(place.nodes(), 2 * place.before + 1);
         Diagram row;
         for (const auto& [node, value] : line) row.add(first + (node.x - place.before) * step, value);
@@ -300,15 +317,18 @@ System surfaceSystem(const SurfaceScheme& scheme, const Patch& coarse) {
         for (const auto& [n, weight] : p.row(e)) b.add(*rowOfA0.at(n), -weight);
         system.b.push_back(b);
         Diagram q = Diagram::delta(e);
-        if (const auto found = vertexPart.find(e); found != vertexPart.end()) q.add(found->second, Rational(1));
+        if (const auto found = vertexPart.find(e); found != vertexPart.end())
+            q.add(found->second, Rational(1));
         system.q.push_back(lifted(p, a, q));
     }
     const Proof proof = prove(system, fine.size());
-    if (!proof) throw InputError(scheme.name, "has no filters on the " + coarse.name() + ": " + proof.failure);
+    if (!proof)
+        throw InputError(scheme.name, "has no filters on the " + coarse.name() + ": " + proof.failure);
     return system;
 }
 
-// --- doubles ------------------------------------------------------------------------------------------------
+// --- doubles
+// ------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -335,8 +355,8 @@ Run innerRun(const Patch& patch, int j, int reach) {
         const auto d = patch.distances({i, j});
         return *std::min_element(d.begin(), d.end()) >= reach;
     };
-    // The inner nodes of a row are one run (the patch is convex) and begin and end within `reach` of its ends, if
-    // there are any; a slanted side costs one node for each row of distance, hence twice the reach.
+    // The inner nodes of a row are one run (the patch is convex) and begin and end within `reach` of its
+    // ends, if there are any; a slanted side costs one node for each row of distance, hence twice the reach.
     int begin = low, end = high + 1;
     while (begin < end && begin - low <= 2 * reach && !isInner(begin)) ++begin;
     if (begin == end || !isInner(begin)) return {end, end};
@@ -345,8 +365,8 @@ Run innerRun(const Patch& patch, int j, int reach) {
 }
 
 // For each tap, where its value lies for this node of the output.
-std::vector<std::pair<std::ptrdiff_t, double>> tapsAlongRow(const Stencil& stencil, Map map, const Patch& input,
-                                                            Node node) {
+std::vector<std::pair<std::ptrdiff_t, double>> tapsAlongRow(const Stencil& stencil, Map map,
+                                                            const Patch& input, Node node) {
     std::vector<std::pair<std::ptrdiff_t, double>> taps;
     for (const auto& [offset, weight] : stencil) {
         const Node at = baseOf(map, node) + offset;
@@ -371,8 +391,8 @@ void apply(Map map, SurfaceFilters& filters, const Patch& coarse, int channels, 
             for (std::size_t c = 0; c < ch; ++c) to[c] += weight * from[c];
         }
     };
-    // Along an inner run a stencil's taps move on evenly: P has one stencil for each parity of i and its input
-    // moves by one every two nodes; A has one, and its input moves by two.
+    // Along an inner run a stencil's taps move on evenly: P has one stencil for each parity of i and its
+    // input moves by one every two nodes; A has one, and its input moves by two.
     const int stride = map == Map::P ? 2 : 1;
     const std::size_t advance = map == Map::P ? 1 : 2;
     for (int j = output.firstRow(); j <= output.lastRow(); ++j) {
@@ -383,7 +403,8 @@ void apply(Map map, SurfaceFilters& filters, const Patch& coarse, int channels, 
             const auto taps = tapsAlongRow(filters.at(map, coarse, first), map, input, first);
             double* to = out.data() + output.index(first) * ch;
             std::size_t moved = 0;
-            for (int i = first.x; i < run.end; i += stride, moved += advance * ch, to += ch * static_cast<std::size_t>(stride)) {
+            for (int i = first.x; i < run.end;
+                 i += stride, moved += advance * ch, to += ch * static_cast<std::size_t>(stride)) {
                 for (std::size_t c = 0; c < ch; ++c) {
                     double sum = 0;
                     for (const auto& [index, weight] : taps) {
@@ -425,8 +446,8 @@ std::vector<double> halve(const SurfaceField& fine, SurfaceFilters& filters, Sur
 }
 
 // g = Q0 d: d on the edge nodes; on a vertex node minus what A0 makes of those, over A0's tap there.
-std::vector<double> spread(const std::vector<double>& details, SurfaceFilters& filters, const SurfaceField& coarse,
-                           const Patch& fine) {
+std::vector<double> spread(const std::vector<double>& details, SurfaceFilters& filters,
+                           const SurfaceField& coarse, const Patch& fine) {
     const auto ch = static_cast<std::size_t>(coarse.channels);
     std::vector<double> g(fine.size() * ch, 0.0);
     std::size_t at = 0, next = 0;
@@ -442,7 +463,8 @@ std::vector<double> spread(const std::vector<double>& details, SurfaceFilters& f
     std::size_t k = 0;
     for (const Node n : coarse.patch.nodes()) {
         double centre = 0;
-        for (const auto& tap : filters.at(Map::A0, coarse.patch, n)) centre += tap.offset == Node{} ? tap.weight : 0;
+        for (const auto& tap : filters.at(Map::A0, coarse.patch, n))
+            centre += tap.offset == Node{} ? tap.weight : 0;
         for (std::size_t c = 0; c < ch; ++c, ++k) g[fine.index(2 * n) * ch + c] = -sums[k] / centre;
     }
     return g;
@@ -471,17 +493,21 @@ void checkField(const SurfaceField& field) {
                                         field.patch.name() + " with " + std::to_string(field.channels) +
                                         " a node has " + std::to_string(needed));
     }
-    const auto bad = std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
+    const auto bad =
+        std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
     if (bad == field.values.end()) return;
-    const auto index = static_cast<std::size_t>(bad - field.values.begin()) / static_cast<std::size_t>(field.channels);
+    const auto index =
+        static_cast<std::size_t>(bad - field.values.begin()) / static_cast<std::size_t>(field.channels);
     const Node node = field.patch.nodes()[index];
-    throw InputError("surface", "the value at node (" + std::to_string(node.x) + "," + std::to_string(node.y) +
+    throw InputError("surface", "the value at node (" + std::to_string(node.x) + "," +
+                                    std::to_string(node.y) +
                                     ") is not a finite number; fill such gaps before");
 }
 
 void checkScheme(const SurfaceLevels& levels, const SurfaceFilters& filters) {
     if (levels.scheme == filters.scheme().name) return;
-    throw InputError("levels", "were made by the scheme '" + levels.scheme + "', not by '" + filters.scheme().name + "'");
+    throw InputError(
+        "levels", "were made by the scheme '" + levels.scheme + "', not by '" + filters.scheme().name + "'");
 }
 
 SurfaceField climb(const SurfaceLevels& levels, SurfaceFilters& filters, int level, int lastWithDetails) {
@@ -494,7 +520,8 @@ SurfaceField climb(const SurfaceLevels& levels, SurfaceFilters& filters, int lev
             (field.patch.refined().size() - field.patch.size()) * static_cast<std::size_t>(field.channels);
         if (details.size() != needed) {
             throw InputError("levels", "details of level " + std::to_string(k) + " hold " +
-                                           std::to_string(details.size()) + " numbers, not " + std::to_string(needed));
+                                           std::to_string(details.size()) + " numbers, not " +
+                                           std::to_string(needed));
         }
         field = doubled(std::move(field), k >= lastWithDetails ? &details : nullptr, filters);
     }
@@ -510,8 +537,9 @@ void checkLevel(const SurfaceLevels& levels, int level) {
 }  // namespace
 
 int SurfaceFilters::reach(Map map) const {
-    // A row of P sees three fine steps around, and along a side whether there are more than three coarse nodes:
-    // six fine steps tell. A row of A sees the rows of P within four fine steps: (6 + 4)/2 coarse ones.
+    // A row of P sees three fine steps around, and along a side whether there are more than three coarse
+    // nodes: six fine steps tell. A row of A sees the rows of P within four fine steps: (6 + 4)/2 coarse
+    // ones.
     return map == Map::P ? 6 : 5;
 }
 
@@ -529,7 +557,8 @@ const SurfaceFilters::Stencil& SurfaceFilters::at(Map map, const Patch& coarse, 
         const Diagram row = map == Map::P   ? surfaceRowOfP(scheme_, coarse, node)
                             : map == Map::A ? surfaceRowOfA(scheme_, coarse, node)
                                             : surfaceRowOfA0(scheme_, coarse, node);
-        for (const auto& [n, weight] : row) place->second.push_back({n - baseOf(map, node), toDouble(weight)});
+        for (const auto& [n, weight] : row)
+            place->second.push_back({n - baseOf(map, node), toDouble(weight)});
     }
     return place->second;
 }
@@ -542,7 +571,8 @@ Patch SurfaceLevels::patch(int level) const {
 
 SurfaceLevels decompose(const SurfaceField& field, SurfaceFilters& filters, int levels) {
     checkField(field);
-    if (levels < 0) throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 or more");
+    if (levels < 0)
+        throw InputError("levels", std::to_string(levels) + " levels are asked for; there may be 0 or more");
     int most = 0;
     for (Patch patch = field.patch; patch.canCoarsen(); patch = patch.coarsened()) ++most;
     if (levels > most) {

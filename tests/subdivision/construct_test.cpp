@@ -1,4 +1,5 @@
-// Filters of masks, in exact rationals: each number was published (B, O) or derived by hand from the identities.
+// Filters of masks, in exact rationals: each number was published (B, O) or derived by hand from the
+// identities.
 #include "subdivision/construct.h"
 
 #include <gmock/gmock.h>
@@ -37,7 +38,8 @@ TEST(Rational, IsReadAndWrittenExactly) {
     EXPECT_EQ(toString(q("46/98")), "23/49");
     EXPECT_EQ(q("-0.125"), Rational(-1, 8));
     EXPECT_EQ(q("1.5/2"), Rational(3, 4));
-    for (const char* bad : {"", "x", "1/0", "1/", "1e3", "--2", "1/2/3"}) EXPECT_THROW(parseRational(bad), InputError) << bad;
+    for (const char* bad : {"", "x", "1/0", "1/", "1e3", "--2", "1/2/3"})
+        EXPECT_THROW(parseRational(bad), InputError) << bad;
     EXPECT_THAT(complaint([] { parseRationals("1 2 x"); }), HasSubstr("number 3"));
 }
 
@@ -48,7 +50,8 @@ TEST(Rational, BecomesTheNearestDouble) {
 }
 
 TEST(ExactSolve, LeastNormIsOrthogonalToTheNullspace) {
-    const Matrix e = {{1, 2, 3, 4}, {0, Rational(1, 3), 1, 1}, {1, Rational(7, 3), 4, 5}};  // the third is the sum
+    const Matrix e = {
+        {1, 2, 3, 4}, {0, Rational(1, 3), 1, 1}, {1, Rational(7, 3), 4, 5}};  // the third is the sum
     const auto x = leastNorm(e, {1, 2, 3});
     ASSERT_TRUE(x);
     for (const auto& n : nullspace(e)) {
@@ -61,12 +64,14 @@ TEST(ExactSolve, LeastNormIsOrthogonalToTheNullspace) {
     EXPECT_FALSE(leastNorm(e, {1, 2, 4})) << "the rows are dependent, the right sides are not";
 }
 
-// --- diagrams -----------------------------------------------------------------------------------------------
+// --- diagrams
+// -----------------------------------------------------------------------------------------------
 
 TEST(Diagram, SpiralStartsAboveAndRunsClockwise) {
     const auto nodes = spiral(Lattice::Triangular, {}, 2);
-    const std::vector<Node> expected = {{0, 0},  {0, 1},  {1, 0},  {1, -1},  {0, -1},  {-1, 0}, {-1, 1}, {0, 2},  {1, 1}, {2, 0},
-                                        {2, -1}, {2, -2}, {1, -2}, {0, -2}, {-1, -1}, {-2, 0}, {-2, 1}, {-2, 2}, {-1, 2}};
+    const std::vector<Node> expected = {{0, 0},   {0, 1},  {1, 0},  {1, -1}, {0, -1}, {-1, 0}, {-1, 1},
+                                        {0, 2},   {1, 1},  {2, 0},  {2, -1}, {2, -2}, {1, -2}, {0, -2},
+                                        {-1, -1}, {-2, 0}, {-2, 1}, {-2, 2}, {-1, 2}};
     EXPECT_EQ(nodes, expected);
 }
 
@@ -95,10 +100,12 @@ TEST(Diagram, ForgetsZeros) {
     EXPECT_EQ(a[at(1)], 0);
 }
 
-// --- the line -----------------------------------------------------------------------------------------------
+// --- the line
+// -----------------------------------------------------------------------------------------------
 
 TEST(Cubic, HasNoAOfWidthOneAndSaysWhichIsTheSmallest) {
-    EXPECT_THAT(complaint([] { construct(namedMask("cubic"), 1); }), HasSubstr("the smallest that exists has 3 taps"));
+    EXPECT_THAT(complaint([] { construct(namedMask("cubic"), 1); }),
+                HasSubstr("the smallest that exists has 3 taps"));
 }
 
 TEST(Cubic, FilterAByWidth) {
@@ -107,9 +114,10 @@ TEST(Cubic, FilterAByWidth) {
     EXPECT_EQ(construct(cubic, 5).a, construct(cubic, 3).a);
     EXPECT_EQ(construct(cubic, 7).a, line(-3, "23/196 -23/49 9/28 52/49 9/28 -23/49 23/196"));  // B(2.11)
     EXPECT_EQ(construct(cubic, 9).a, construct(cubic, 7).a);
-    EXPECT_EQ(construct(cubic, 11).a, line(-5,
-                                           "-569/12038 1138/6019 -141/926 -2024/6019 4479/12038 5714/6019 4479/12038 "
-                                           "-2024/6019 -141/926 1138/6019 -569/12038"));
+    EXPECT_EQ(construct(cubic, 11).a,
+              line(-5,
+                   "-569/12038 1138/6019 -141/926 -2024/6019 4479/12038 5714/6019 4479/12038 "
+                   "-2024/6019 -141/926 1138/6019 -569/12038"));
     EXPECT_EQ(construct(cubic, 13).a, construct(cubic, 11).a);
 }
 
@@ -119,7 +127,8 @@ TEST(Cubic, FiltersBAndQ) {
     EXPECT_EQ(construct(cubic, 3).b[0], fourth.scaled(q("1/4")));
     EXPECT_EQ(construct(cubic, 3).q[0], line(0, "1/4 1 1/4"));
     EXPECT_EQ(construct(cubic, 7).b[0], fourth.scaled(q("13/98")));  // B(2.13)
-    EXPECT_EQ(construct(cubic, 7).q[0], line(-2, "-23/208 -23/52 -63/208 1 -63/208 -23/52 -23/208"));  // B(2.14)
+    EXPECT_EQ(construct(cubic, 7).q[0],
+              line(-2, "-23/208 -23/52 -63/208 1 -63/208 -23/52 -23/208"));  // B(2.14)
     EXPECT_EQ(construct(cubic, 11).b[0], fourth.scaled(q("2857/24076")));
 }
 
@@ -141,7 +150,8 @@ TEST(DynLevinGregory, LeastNormFilters) {
     EXPECT_EQ(construct(dlg, 9).a, line(-4, "3/161 0 -24/161 48/161 107/161 48/161 -24/161 0 3/161"));
     EXPECT_EQ(construct(dlg, 13).a[{}], q("21755/33553"));
     EXPECT_EQ(construct(dlg, 9).b[0], line(-2, "1/16 0 -9/16 1 -9/16 0 1/16"));  // O(2) lost the sign of 1/16
-    // The last tap of O's optimal filter is printed without its sign; with -3/161 it would not reproduce P's columns.
+    // The last tap of O's optimal filter is printed without its sign; with -3/161 it would not reproduce P's
+    // columns.
     Diagram minus = construct(dlg, 9).a;
     minus.add(at(4), q("-6/161"));
     minus.add(at(-4), q("-6/161"));
@@ -176,20 +186,22 @@ TEST(BadMask, IsRefusedWithTheReason) {
         return complaint([&] { construct(customMask(Lattice::Line, parseRationals(taps)), width); });
     };
     // (1 + z)^2 in both halves: alternating sequences vanish.
-    EXPECT_THAT(tell("1/2 1/2 1/2 1/2", 4), HasSubstr("not injective: its even and odd taps share the factor 1 + z"));
+    EXPECT_THAT(tell("1/2 1/2 1/2 1/2", 4),
+                HasSubstr("not injective: its even and odd taps share the factor 1 + z"));
     EXPECT_THAT(tell("1 2 0 0 -1 -2", 8), HasSubstr("-1 + z^2"));
     EXPECT_THAT(tell("0 0 0", 3), HasSubstr("no tap"));
     EXPECT_THAT(tell("1/8 1/2 3/4 1/2 1/8", 4), HasSubstr("take 5"));
     EXPECT_THAT(tell("1/8 1/2 3/4 1/2 1/8", 0), HasSubstr("too small"));
     EXPECT_THAT(tell("1/8 1/2 3/4 1/2 1/8", 1001), HasSubstr("too large"));
-    EXPECT_THAT(complaint([] { namedMask("doo"); }), HasSubstr("chaikin, cubic, dlg, butterfly, loop, catmull-clark"));
+    EXPECT_THAT(complaint([] { namedMask("doo"); }),
+                HasSubstr("chaikin, cubic, dlg, butterfly, loop, catmull-clark"));
 }
 
 TEST(Proof, FailsWhenOneValueIsWrong) {
     for (const char* name : {"cubic", "butterfly", "loop"}) {
         const Filters right = construct(namedMask(name), std::string(name) == "cubic" ? 7 : 3);
         ASSERT_TRUE(prove(right));
-        const auto wrong = [&](Diagram Filters::* which) {
+        const auto wrong = [&](Diagram Filters::*which) {
             Filters f = right;
             (f.*which).add((f.*which).begin()->first, q("1/1000000000000000000"));
             return prove(f).failure;
@@ -210,7 +222,8 @@ TEST(Proof, FailsWhenOneValueIsWrong) {
     }
 }
 
-// --- the triangular lattice ---------------------------------------------------------------------------------
+// --- the triangular lattice
+// ---------------------------------------------------------------------------------
 
 // Values by ring: `corners` are the ring's nodes on the six axes.
 struct RingValues {
@@ -288,8 +301,9 @@ TEST(Loop, WidthsOneAndTwo) {
         ++count[{distance(Lattice::Triangular, f.details[0], node), isVertexNode(node), value}];
     }
     const std::map<std::tuple<int, bool, Rational>, int> expected = {
-        {{0, false, q("19/16")}, 1}, {{1, false, q("1/8")}, 4},  {{1, true, q("-15/16")}, 2}, {{2, false, q("1/32")}, 4},
-        {{2, false, q("3/32")}, 6},  {{2, true, q("-5/16")}, 2}, {{3, false, q("1/32")}, 4}};
+        {{0, false, q("19/16")}, 1}, {{1, false, q("1/8")}, 4},  {{1, true, q("-15/16")}, 2},
+        {{2, false, q("1/32")}, 4},  {{2, false, q("3/32")}, 6}, {{2, true, q("-5/16")}, 2},
+        {{3, false, q("1/32")}, 4}};
     EXPECT_EQ(count, expected);
 }
 
@@ -302,7 +316,8 @@ TEST(Loop, WidthThree) {
 
 TEST(LoopLike, FollowsItsFormulasAndContainsLoop) {
     EXPECT_EQ(loopLike(q("1/16"), q("1/8")).p, namedMask("loop").p);
-    for (const auto& [alpha, gamma] : {std::pair("1/16", "1/8"), {"1/12", "1/10"}, {"1/20", "0"}, {"-1/9", "2/7"}}) {
+    for (const auto& [alpha, gamma] :
+         {std::pair("1/16", "1/8"), {"1/12", "1/10"}, {"1/20", "0"}, {"-1/9", "2/7"}}) {
         const Rational a = q(alpha), g = q(gamma), below = 1 + 2 * g - 12 * a;
         const Filters f = construct(loopLike(a, g), 1);
         EXPECT_EQ(f.a[{}], (1 + 2 * g) / below);
@@ -315,7 +330,8 @@ TEST(LoopLike, FollowsItsFormulasAndContainsLoop) {
 
 TEST(LoopLike, WithoutALeftInverseIsRefused) {
     // 1 + 2 gamma = 12 alpha: constants times (-1) on a coarse sublattice vanish.
-    EXPECT_THAT(complaint([] { construct(loopLike(q("1/8"), q("1/4")), 1); }), HasSubstr("loop-like:1/8,1/4: "));
+    EXPECT_THAT(complaint([] { construct(loopLike(q("1/8"), q("1/4")), 1); }),
+                HasSubstr("loop-like:1/8,1/4: "));
 }
 
 TEST(TriangularMask, GivenInSpiralOrderIsRead) {
@@ -333,7 +349,8 @@ TEST(TriangularMask, WithADependentColumnIsRefused) {
     EXPECT_THAT(complaint([&] { construct(mask, 2); }), HasSubstr("not injective"));
 }
 
-// --- the quad lattice ---------------------------------------------------------------------------------------
+// --- the quad lattice
+// ---------------------------------------------------------------------------------------
 
 TEST(CatmullClark, RegularFiltersAreProductsOfTheCubicOnes) {
     const Filters f = construct(namedMask("catmull-clark"), 1);
@@ -360,10 +377,12 @@ TEST(QuadMask, NotAProductAndNotInterpolatingHasAOneTapInverse) {
     EXPECT_TRUE(prove(construct(mask, 3)));
 }
 
-// --- pictures -----------------------------------------------------------------------------------------------
+// --- pictures
+// -----------------------------------------------------------------------------------------------
 
 TEST(Picture, OfARowShowsItsCentreInBrackets) {
-    EXPECT_EQ(picture(construct(namedMask("cubic"), 7).a, Lattice::Line, {}), "1/196 x  23   -92   63  [208]  63   -92   23 \n");
+    EXPECT_EQ(picture(construct(namedMask("cubic"), 7).a, Lattice::Line, {}),
+              "1/196 x  23   -92   63  [208]  63   -92   23 \n");
 }
 
 TEST(Picture, OfAHexagonMovesEachRowByHalfACell) {
