@@ -10,19 +10,10 @@ namespace isowave::subdivision {
 
 namespace {
 
+// out += sum of the row's weights times in[first ..]; around the end for a closed curve.
 template <int Dim>
-void applyRow(const FilterRow& row, std::ptrdiff_t first, const double* in, double* out) {
-    double sum[Dim] = {};
-    const double* from = in + first * Dim;
-    for (const double w : row.weights) {
-        for (int d = 0; d < Dim; ++d) sum[d] += w * *from++;
-    }
-    for (int d = 0; d < Dim; ++d) out[d] += sum[d];
-}
-
-template <int Dim>
-void applyWrapped(const FilterRow& row, std::ptrdiff_t first, const double* in, std::ptrdiff_t inputs,
-                  double* out) {
+void addRow(const FilterRow& row, std::ptrdiff_t first, const double* in, std::ptrdiff_t inputs,
+            double* out) {
     for (std::size_t k = 0; k < row.weights.size(); ++k) {
         std::ptrdiff_t i = (first + static_cast<std::ptrdiff_t>(k)) % inputs;
         if (i < 0) i += inputs;
@@ -30,41 +21,107 @@ void applyWrapped(const FilterRow& row, std::ptrdiff_t first, const double* in, 
     }
 }
 
+// The same for `count` outputs, `stride` apart, whose inputs are `step` apart and do not wrap. The number of
+// taps is known at compile time for the widths in use, so that the inner loop unrolls.
+struct Sweep {
+    std::ptrdiff_t count, stride, step;
+};
+template <int Dim, int Taps>
+void addRows(const FilterRow& row, const Sweep& sweep, const double* in, double* out) {
+    const int taps = Taps > 0 ? Taps : static_cast<int>(row.weights.size());
+    const double* const weights = row.weights.data();
+    for (std::ptrdiff_t k = 0; k < sweep.count; ++k, in += sweep.step * Dim, out += sweep.stride * Dim) {
+        double sum[Dim] = {};
+        for (int t = 0; t < taps; ++t) {
+            for (int d = 0; d < Dim; ++d) sum[d] += weights[t] * in[t * Dim + d];
+        }
+        for (int d = 0; d < Dim; ++d) out[d] += sum[d];
+    }
+}
+
 template <int Dim>
-void applyAll(const FilterBank& bank, bool closed, const double* in, std::size_t inputCount, double* out,
+void addRows(const FilterRow& row, const Sweep& sweep, const double* in, double* out) {
+    switch (row.weights.size()) {
+        case 0:
+            return;
+        case 1:
+            return addRows<Dim, 1>(row, sweep, in, out);
+        case 2:
+            return addRows<Dim, 2>(row, sweep, in, out);
+        case 3:
+            return addRows<Dim, 3>(row, sweep, in, out);
+        case 4:
+            return addRows<Dim, 4>(row, sweep, in, out);
+        case 5:
+            return addRows<Dim, 5>(row, sweep, in, out);
+        case 7:
+            return addRows<Dim, 7>(row, sweep, in, out);
+        case 9:
+            return addRows<Dim, 9>(row, sweep, in, out);
+        case 11:
+            return addRows<Dim, 11>(row, sweep, in, out);
+        default:
+            return addRows<Dim, 0>(row, sweep, in, out);
+    }
+}
+
+std::ptrdiff_t ceilDivide(std::ptrdiff_t a, std::ptrdiff_t b) { return a <= 0 ? -(-a / b) : (a - 1) / b + 1; }
+
+// The row of one output, and the input at which it begins.
+std::pair<const FilterRow*, std::ptrdiff_t> rowOf(const FilterBank& bank, std::ptrdiff_t k,
+                                                  std::ptrdiff_t inputs, std::ptrdiff_t outputs) {
+    const auto head = static_cast<std::ptrdiff_t>(bank.head.size()),
+               tail = static_cast<std::ptrdiff_t>(bank.tail.size());
+    if (k < head) {
+        const FilterRow& row = bank.head[static_cast<std::size_t>(k)];
+        return {&row, row.first};
+    }
+    if (k >= outputs - tail) {
+        const FilterRow& row = bank.tail[static_cast<std::size_t>(k - (outputs - tail))];
+        return {&row, inputs + row.first};
+    }
+    const auto period = static_cast<std::ptrdiff_t>(bank.inner.size());
+    const FilterRow& row = bank.inner[static_cast<std::size_t>((k - head) % period)];
+    return {&row, row.first + (k - head) / period * bank.step};
+}
+
+template <int Dim>
+void applyAll(const FilterBank& bank, const double* in, std::size_t inputCount, double* out,
               std::size_t outputCount) {
     const auto inputs = static_cast<std::ptrdiff_t>(inputCount),
                outputs = static_cast<std::ptrdiff_t>(outputCount);
     const auto head = std::min(outputs, static_cast<std::ptrdiff_t>(bank.head.size()));
-    const auto tail = static_cast<std::ptrdiff_t>(bank.tail.size());
+    const auto inner =
+        std::max(head, outputs - static_cast<std::ptrdiff_t>(bank.tail.size()));  // end of the inner ones
+    const auto single = [&](std::ptrdiff_t k) {
+        const auto [row, first] = rowOf(bank, k, inputs, outputs);
+        addRow<Dim>(*row, first, in, inputs, out + k * Dim);
+    };
+    for (std::ptrdiff_t k = 0; k < head; ++k) single(k);
+    for (std::ptrdiff_t k = inner; k < outputs; ++k) single(k);
     const auto period = static_cast<std::ptrdiff_t>(bank.inner.size());
-    for (std::ptrdiff_t k = 0; k < head; ++k) {
-        const FilterRow& row = bank.head[static_cast<std::size_t>(k)];
-        applyRow<Dim>(row, row.first, in, out + k * Dim);
-    }
-    for (std::ptrdiff_t k = std::max(head, outputs - tail); k < outputs; ++k) {
-        const FilterRow& row = bank.tail[static_cast<std::size_t>(k - (outputs - tail))];
-        applyRow<Dim>(row, inputs + row.first, in, out + k * Dim);
-    }
     for (std::ptrdiff_t phase = 0; phase < period; ++phase) {
         const FilterRow& row = bank.inner[static_cast<std::size_t>(phase)];
         const auto taps = static_cast<std::ptrdiff_t>(row.weights.size());
-        std::ptrdiff_t first = row.first;
-        for (std::ptrdiff_t k = head + phase; k < outputs - tail; k += period, first += bank.step) {
-            if (!closed || (first >= 0 && first + taps <= inputs)) {
-                applyRow<Dim>(row, first, in, out + k * Dim);
-            } else {
-                applyWrapped<Dim>(row, first, in, inputs, out + k * Dim);
-            }
-        }
+        // Of the outputs head + phase + q period those with 0 <= first + q step and first + q step + taps <=
+        // inputs do not wrap: one sweep; the few before and after it one by one.
+        const std::ptrdiff_t count = std::max<std::ptrdiff_t>(0, ceilDivide(inner - head - phase, period));
+        const std::ptrdiff_t room = inputs - taps - row.first;
+        const std::ptrdiff_t end = room < 0 ? 0 : std::min(count, room / bank.step + 1);
+        const std::ptrdiff_t begin =
+            std::min(end, std::max<std::ptrdiff_t>(0, ceilDivide(-row.first, bank.step)));
+        for (std::ptrdiff_t q = 0; q < begin; ++q) single(head + phase + q * period);
+        addRows<Dim>(row, {end - begin, period, bank.step}, in + (row.first + begin * bank.step) * Dim,
+                     out + (head + phase + begin * period) * Dim);
+        for (std::ptrdiff_t q = end; q < count; ++q) single(head + phase + q * period);
     }
 }
 
-std::vector<double> applied(const FilterBank& bank, bool closed, int dimension, const std::vector<double>& in,
+std::vector<double> applied(const FilterBank& bank, int dimension, const std::vector<double>& in,
                             std::size_t outputs) {
     const auto d = static_cast<std::size_t>(dimension);
     std::vector<double> out(outputs * d, 0.0);
-    applyBank(bank, closed, dimension, in.data(), in.size() / d, out.data(), outputs, true);
+    applyBank(bank, dimension, in.data(), in.size() / d, out.data(), outputs, true);
     return out;
 }
 
@@ -74,13 +131,20 @@ void insertVirtual(std::vector<double>& points, int dimension, const CurveFilter
     const auto d = static_cast<std::size_t>(dimension);
     const std::size_t place = filters.virtualPoint(n), fine = filters.fineSize(n), details = fine - n;
     points.insert(points.begin() + static_cast<std::ptrdiff_t>(place * d), d, 0.0);
-    const auto& b = filters.maps(n).b;
-    std::vector<double> unit(fine, 0.0);
-    unit[place] = 1;
-    const double weight = applied(b, filters.closed(), 1, unit, details).back();
+    const auto inputs = static_cast<std::ptrdiff_t>(fine);
+    const auto [row, first] = rowOf(filters.maps(n).b, static_cast<std::ptrdiff_t>(details) - 1, inputs,
+                                    static_cast<std::ptrdiff_t>(details));
+    double weight = 0;
+    std::vector<double> detail(d, 0.0);
+    for (std::size_t k = 0; k < row->weights.size(); ++k) {
+        std::ptrdiff_t i = (first + static_cast<std::ptrdiff_t>(k)) % inputs;
+        if (i < 0) i += inputs;
+        if (static_cast<std::size_t>(i) == place) weight += row->weights[k];
+        for (std::size_t c = 0; c < d; ++c)
+            detail[c] += row->weights[k] * points[static_cast<std::size_t>(i) * d + c];
+    }
     assert(weight != 0);
-    const auto detail = applied(b, filters.closed(), dimension, points, details);
-    for (std::size_t c = 0; c < d; ++c) points[place * d + c] = -detail[(details - 1) * d + c] / weight;
+    for (std::size_t c = 0; c < d; ++c) points[place * d + c] = -detail[c] / weight;
 }
 
 // One level: points of size m become n points; returns the details.
@@ -90,8 +154,8 @@ std::vector<double> halve(std::vector<double>& points, int dimension, const Curv
     const std::size_t m = points.size() / d, fine = filters.fineSize(n);
     if (fine > m) insertVirtual(points, dimension, filters, n);
     const auto& maps = filters.maps(n);
-    auto details = applied(maps.b, filters.closed(), dimension, points, fine - n);
-    points = applied(maps.a, filters.closed(), dimension, points, n);
+    auto details = applied(maps.b, dimension, points, fine - n);
+    points = applied(maps.a, dimension, points, n);
     details.resize((m - n) * d);
     return details;
 }
@@ -102,11 +166,11 @@ std::vector<double> doubled(const std::vector<double>& points, const std::vector
     const auto d = static_cast<std::size_t>(dimension);
     const std::size_t n = points.size() / d, fine = filters.fineSize(n);
     const auto& maps = filters.maps(n);
-    auto result = applied(maps.p, filters.closed(), dimension, points, fine);
+    auto result = applied(maps.p, dimension, points, fine);
     if (details) {
         std::vector<double> all = *details;
         all.resize((fine - n) * d, 0.0);
-        applyBank(maps.q, filters.closed(), dimension, all.data(), fine - n, result.data(), fine, true);
+        applyBank(maps.q, dimension, all.data(), fine - n, result.data(), fine, true);
     }
     if (fine > m) {
         const auto place = result.begin() + static_cast<std::ptrdiff_t>(filters.virtualPoint(n) * d);
@@ -198,16 +262,16 @@ double lengthSquared(const double* v, int dimension) {
 
 }  // namespace
 
-void applyBank(const FilterBank& bank, bool closed, int dimension, const double* in, std::size_t inputs,
-               double* out, std::size_t outputs, bool accumulate) {
+void applyBank(const FilterBank& bank, int dimension, const double* in, std::size_t inputs, double* out,
+               std::size_t outputs, bool accumulate) {
     if (!accumulate) std::fill_n(out, outputs * static_cast<std::size_t>(dimension), 0.0);
     switch (dimension) {
         case 1:
-            return applyAll<1>(bank, closed, in, inputs, out, outputs);
+            return applyAll<1>(bank, in, inputs, out, outputs);
         case 2:
-            return applyAll<2>(bank, closed, in, inputs, out, outputs);
+            return applyAll<2>(bank, in, inputs, out, outputs);
         case 3:
-            return applyAll<3>(bank, closed, in, inputs, out, outputs);
+            return applyAll<3>(bank, in, inputs, out, outputs);
         default:
             assert(false && "dimension is 1, 2 or 3");
     }

@@ -76,7 +76,7 @@ Polyline resampled(const Polyline& curve, std::size_t count);
 
 // One linear map of a scheme, applied to points of `dimension` numbers: out (+)= bank in. For tests and
 // benchmarks.
-void applyBank(const FilterBank& bank, bool closed, int dimension, const double* in, std::size_t inputs,
-               double* out, std::size_t outputs, bool accumulate);
+void applyBank(const FilterBank& bank, int dimension, const double* in, std::size_t inputs, double* out,
+               std::size_t outputs, bool accumulate);
 
 }  // namespace isowave::subdivision

@@ -68,18 +68,18 @@ std::vector<Node> Patch::edgeNodes() const {
     return all;
 }
 
-std::array<int, 6> Patch::distances(Node n) const {
+std::array<int, 6> Patch::distances(int a, int b, Node n) const {
     std::array<int, 6> d;
     d.fill(kFar);
     switch (kind_) {
         case Kind::Parallelogram:
-            d = {n.x, a_ - n.x, n.y, b_ - n.y, kFar, kFar};
+            d = {n.x, a - n.x, n.y, b - n.y, kFar, kFar};
             break;
         case Kind::Triangle:
-            d = {n.x, kFar, n.y, kFar, kFar, a_ - n.x - n.y};
+            d = {n.x, kFar, n.y, kFar, kFar, a - n.x - n.y};
             break;
         case Kind::Hexagon:
-            d = {a_ + n.x, a_ - n.x, a_ + n.y, a_ - n.y, a_ + n.x + n.y, a_ - n.x - n.y};
+            d = {a + n.x, a - n.x, a + n.y, a - n.y, a + n.x + n.y, a - n.x - n.y};
             break;
         case Kind::Torus:
             break;

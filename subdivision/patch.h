@@ -53,7 +53,9 @@ class Patch {
 
     // Steps to each side (six places; a side that the patch does not have is farther than any other).
     // 0 on the side itself. Two zeros: a corner.
-    std::array<int, 6> distances(Node node) const;
+    std::array<int, 6> distances(Node node) const { return distances(a_, b_, node); }
+    // refined().distances(fine), without making that patch.
+    std::array<int, 6> refinedDistances(Node fine) const { return distances(2 * a_, 2 * b_, fine); }
     static constexpr int kFar = 1 << 28;
 
     // "parallelogram 8 x 4", "hexagon 5": for messages.
@@ -65,6 +67,7 @@ class Patch {
   private:
     enum class Kind { Parallelogram, Triangle, Hexagon, Torus };
     Patch(Kind kind, int a, int b);
+    std::array<int, 6> distances(int a, int b, Node node) const;
     Kind kind_;
     int a_, b_, rowLow_ = 0;
     std::vector<std::size_t> starts_;  // index of the first node of each row, and the size at the end

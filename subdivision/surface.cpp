@@ -375,6 +375,19 @@ std::vector<std::pair<std::ptrdiff_t, double>> tapsAlongRow(const Stencil& stenc
     return taps;
 }
 
+// sums[k] += weight * from[k Advance], for nodes of `channels` numbers.
+template <std::size_t Advance>
+void addScaled(double weight, const double* from, std::size_t count, std::size_t channels, double* sums) {
+    if (channels == 1) {
+        for (std::size_t k = 0; k < count; ++k) sums[k] += weight * from[k * Advance];
+        return;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        for (std::size_t c = 0; c < channels; ++c)
+            sums[k * channels + c] += weight * from[k * Advance * channels + c];
+    }
+}
+
 // out = map in. REQUIRES: sizes as the patches say.
 void apply(Map map, SurfaceFilters& filters, const Patch& coarse, int channels, const std::vector<double>& in,
            std::vector<double>& out) {
@@ -394,24 +407,28 @@ void apply(Map map, SurfaceFilters& filters, const Patch& coarse, int channels, 
     // Along an inner run a stencil's taps move on evenly: P has one stencil for each parity of i and its
     // input moves by one every two nodes; A has one, and its input moves by two.
     const int stride = map == Map::P ? 2 : 1;
-    const std::size_t advance = map == Map::P ? 1 : 2;
+    std::vector<double> sums;
     for (int j = output.firstRow(); j <= output.lastRow(); ++j) {
         const Run run = innerRun(output, j, filters.reach(map));
         for (int i = output.low(j); i < run.begin; ++i) general({i, j});
         for (int phase = 0; phase < stride && run.begin + phase < run.end; ++phase) {
             const Node first{run.begin + phase, j};
             const auto taps = tapsAlongRow(filters.at(map, coarse, first), map, input, first);
-            double* to = out.data() + output.index(first) * ch;
-            std::size_t moved = 0;
-            for (int i = first.x; i < run.end;
-                 i += stride, moved += advance * ch, to += ch * static_cast<std::size_t>(stride)) {
-                for (std::size_t c = 0; c < ch; ++c) {
-                    double sum = 0;
-                    for (const auto& [index, weight] : taps) {
-                        sum += weight * in[static_cast<std::size_t>(index) * ch + moved + c];
-                    }
-                    to[c] = sum;
+            // Tap by tap along the row, not node by node: each is one pass over contiguous (A: every second)
+            // values.
+            const std::size_t count = static_cast<std::size_t>((run.end - first.x + stride - 1) / stride);
+            sums.assign(count * ch, 0.0);
+            for (const auto& [index, weight] : taps) {
+                const double* const from = in.data() + static_cast<std::size_t>(index) * ch;
+                if (map == Map::P) {
+                    addScaled<1>(weight, from, count, ch, sums.data());
+                } else {
+                    addScaled<2>(weight, from, count, ch, sums.data());
                 }
+            }
+            double* to = out.data() + output.index(first) * ch;
+            for (std::size_t k = 0; k < count; ++k, to += ch * static_cast<std::size_t>(stride)) {
+                std::copy_n(sums.data() + k * ch, ch, to);
             }
         }
         for (int i = run.end; i <= output.high(j); ++i) general({i, j});
@@ -550,7 +567,7 @@ const SurfaceFilters::Stencil& SurfaceFilters::at(Map map, const Patch& coarse, 
         key[1] = node.x & 1;
         key[2] = node.y & 1;
     }
-    const auto distances = map == Map::P ? coarse.refined().distances(node) : coarse.distances(node);
+    const auto distances = map == Map::P ? coarse.refinedDistances(node) : coarse.distances(node);
     for (std::size_t s = 0; s < 6; ++s) key[s + 3] = std::min(distances[s], far);
     const auto [place, isNew] = stencils_.try_emplace(key);
     if (isNew) {

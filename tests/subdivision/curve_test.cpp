@@ -182,7 +182,7 @@ TEST(CurveFilters, AreTheExactRowsAtEverySize) {
                 for (std::size_t k = 0; k < inputs; ++k) {
                     std::vector<double> unit(inputs, 0.0), out(outputs);
                     unit[k] = 1;
-                    applyBank(bank, false, 1, unit.data(), inputs, out.data(), outputs, false);
+                    applyBank(bank, 1, unit.data(), inputs, out.data(), outputs, false);
                     for (std::size_t i = 0; i < outputs; ++i) {
                         const Rational value =
                             columns ? rows[k][at(static_cast<int>(i))] : rows[i][at(static_cast<int>(k))];
