@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 add_library(isowave INTERFACE)
 add_library(isowave::isowave ALIAS isowave)
-set(umbrella base volume wavelets polygonize)
+set(umbrella base volume wavelets polygonize subdivision pictures)
 foreach(module ${umbrella})
   target_link_libraries(isowave INTERFACE isowave::${module})
 endforeach()

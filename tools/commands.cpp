@@ -89,9 +89,11 @@ Value choice(const std::string& text, const std::array<std::pair<std::string_vie
 
 // ---- the table ----
 
+constexpr std::string_view kOutput = "lod analyse mesh field curve-levels relief";
 constexpr std::string_view kFit = "lod analyse mesh field";          // those that turn an input into a field
 constexpr std::string_view kImages = "lod analyse mesh field info";  // those that read images
 constexpr std::string_view kAll = "lod analyse mesh field info check compare";
+constexpr std::string_view kQuiet = "lod analyse mesh field info check compare filters curve-levels relief";
 
 constexpr Command kCommands[] = {
     {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
@@ -129,6 +131,27 @@ constexpr Command kCommands[] = {
      "area, "
      "max over the samples, and a bound that no point of the surface exceeds.",
      false, runCompare},
+    {"filters", "[SUBDIVISION]", "a subdivision -> its four filters A, B, P, Q, exactly, with proof",
+     "SUBDIVISION is chaikin, cubic, dlg, dlg-refined, bspline-D, butterfly, loop, loop-like:ALPHA,GAMMA or "
+     "catmull-clark; or give your own --mask. Prints the diagrams as rationals: rows on the line, pictures "
+     "of "
+     "the lattice else. AP = I, BP = 0, AQ = 0 and BQ = I are checked in rationals.",
+     false, runFilters},
+    {"curve-levels", "INPUT", "curves -> the same curves at coarser levels, losslessly",
+     "INPUT holds polylines: .txt (a point a line), GeoJSON, SVG paths. -o out/coast makes the folder "
+     "out/coast with "
+     "level_0, level_1, ... in the same format, and smooth: the coarsest level subdivided back, without "
+     "details. "
+     "Open curves keep their ends; any number of points will do. Prints the points and the L2 error of each "
+     "level.",
+     true, runCurveLevels},
+    {"relief", "INPUT", "a height field -> coarser levels on the triangular lattice, losslessly",
+     "INPUT is a picture (PNG, TIFF), a NumPy array (.npy) or an ESRI ASCII grid (.asc). -o out/relief makes "
+     "the folder "
+     "out/relief with level_K.npy and .png, shade_K.png (lit), details_K.png, suppressed.npy and .png (the "
+     "coarsest "
+     "level subdivided back, without details) and reconstructed.npy.",
+     true, runRelief},
     {"help", "[COMMAND]", "this overview, or the options of one subcommand", "", false, runHelp},
     {"completion", "bash", "a completion script for the shell: source <(isowave completion bash)", "", false,
      runCompletion},
@@ -156,7 +179,8 @@ constexpr std::int64_t kHuge = std::int64_t{1} << 40;
 
 constexpr Option kOptions[] = {
     // What comes out.
-    {"-o,--output", "PATH", "", "where the result goes: a folder for lod, a file otherwise", kFit,
+    {"-o,--output", "PATH", "",
+     "where the result goes: a folder for lod, curve-levels and relief, a file otherwise", kOutput,
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");
          s.output = v;
@@ -186,7 +210,7 @@ constexpr Option kOptions[] = {
          if (v.empty()) throw UsageError("the name is empty");
          s.jsonFile = v;
      }},
-    {"--json", "", "", "print JSON instead of text", "info check compare",
+    {"--json", "", "", "print JSON instead of text", "info check compare filters curve-levels relief",
      [](Settings& s, const std::string&) { s.json = true; }},
 
     // What the solid is.
@@ -240,12 +264,54 @@ constexpr Option kOptions[] = {
     {"--sampling", "LEN", "1/500 of the diagonal", "largest distance of a point of the surface to a sample",
      "compare", [](Settings& s, const std::string& v) { s.sampling = positive(v); }},
 
+    // Filters, curves, reliefs.
+    {"--scheme", "NAME", "dlg-refined", "chaikin-W, cubic-W (W taps), dlg-trial, dlg-refined, dlg-optimal",
+     "curve-levels", [](Settings& s, const std::string& v) { s.scheme = v; }},
+    {"--scheme", "NAME", "butterfly-3",
+     "butterfly-trivial, butterfly-W, loop-W (W rings), loop-like:ALPHA,GAMMA", "relief",
+     [](Settings& s, const std::string& v) { s.scheme = v; }},
+    {"--mask", "TAPS", "", "a subdivision of your own: \"1/8 1/2 3/4 1/2 1/8\"; in spiral order on a lattice",
+     "filters curve-levels", [](Settings& s, const std::string& v) { s.mask = v; }},
+    {"--lattice", "line|triangular|quad", "line", "where the mask lives", "filters",
+     [](Settings& s, const std::string& v) {
+         s.lattice = choice(v, std::array<std::pair<std::string_view, std::string_view>, 3>{
+                                   {{"line", "line"}, {"triangular", "triangular"}, {"quad", "quad"}}});
+     }},
+    {"--width", "W", "the usual one, or the smallest there is", "of A: taps on the line, rings on a lattice",
+     "filters curve-levels",
+     [](Settings& s, const std::string& v) { s.width = static_cast<int>(integer(v, 0, 1000)); }},
+    {"--boundary", "", "", "the rows beside an end of a curve, or beside a side of a triangular patch",
+     "filters", [](Settings& s, const std::string&) { s.boundary = true; }},
+    {"--svg", "FILE", "", "draw the diagrams into this file", "filters",
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.svg = v;
+     }},
+    {"--levels", "N", "6", "how many decompositions", "curve-levels",
+     [](Settings& s, const std::string& v) { s.depth = static_cast<int>(integer(v, 0, 60)); }},
+    {"--levels", "N", "2", "how many decompositions", "relief",
+     [](Settings& s, const std::string& v) { s.depth = static_cast<int>(integer(v, 0, 20)); }},
+    {"--points", "N", "as they are", "first put N points at equal steps along each curve", "curve-levels",
+     [](Settings& s, const std::string& v) { s.points = static_cast<std::size_t>(integer(v, 2, kHuge)); }},
+    {"--threshold", "LEN", "", "drop details shorter than this, into thresholded", "curve-levels",
+     [](Settings& s, const std::string& v) { s.threshold = positive(v); }},
+    {"--keep", "N", "", "keep only the N longest details of each curve, into thresholded", "curve-levels",
+     [](Settings& s, const std::string& v) { s.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); }},
+    {"--layout", "rows|quincunx", "rows",
+     "every sample, one diagonal of each square an edge; or every second one, in a hexagon", "relief",
+     [](Settings& s, const std::string& v) {
+         s.quincunx = choice(
+             v, std::array<std::pair<std::string_view, bool>, 2>{{{"rows", false}, {"quincunx", true}}});
+     }},
+    {"--table", "", "", "compare the schemes' errors too", "curve-levels relief",
+     [](Settings& s, const std::string&) { s.table = true; }},
+
     // How the job runs.
     {"--threads", "N", "all", "threads to use; the result does not depend on it, to the bit", kAll,
      [](Settings& s, const std::string& v) { s.threads = static_cast<int>(integer(v, 1, 4096)); }},
     {"--max-memory", "GB", "70 % of this computer's", "refuse jobs that would take more", kImages,
      [](Settings& s, const std::string& v) { s.maxMemory = positive(v); }},
-    {"--quiet", "", "", "no progress and no remarks on standard error", kAll,
+    {"--quiet", "", "", "no progress and no remarks on standard error", kQuiet,
      [](Settings& s, const std::string&) { s.quiet = true; }},
     {"--markdown", "", "", "everything, as markdown", "help",
      [](Settings& s, const std::string&) { s.markdown = true; }},

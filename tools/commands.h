@@ -61,6 +61,9 @@ int runField(const Settings&, Console&);
 int runInfo(const Settings&, Console&);
 int runCheck(const Settings&, Console&);
 int runCompare(const Settings&, Console&);
+int runFilters(const Settings&, Console&);
+int runCurveLevels(const Settings&, Console&);
+int runRelief(const Settings&, Console&);
 int runHelp(const Settings&, Console&);
 int runCompletion(const Settings&, Console&);
 

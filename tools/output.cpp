@@ -101,6 +101,14 @@ std::string OutputFolder::publicText(std::string message) const {
     return message;
 }
 
+void writeFiles(OutputFolder& out, const std::map<std::string, std::string>& files) {
+    for (const auto& [name, bytes] : files) {
+        AtomicFile file(out.place(name));
+        file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        file.commit();
+    }
+}
+
 OutputFile::OutputFile(const fs::path& path) : parents_(tidy(path).parent_path()) {
     const AtomicFile probe(path);  // throws when the place is a folder or cannot be written
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,9 @@ class OutputFolder {
     std::filesystem::path hidden_;
     std::vector<std::string> names_;
 };
+
+// Name -> bytes, into the folder. Throws OperationError when one cannot be written.
+void writeFiles(OutputFolder& out, const std::map<std::string, std::string>& files);
 
 // One file as result: makes the folders on the way and finds out at once whether the file can be written.
 class OutputFile {

@@ -68,6 +68,19 @@ struct Settings {
     bool selfIntersections = false;
     std::optional<double> sampling;  // world units between samples of a distance
 
+    // filters, curve-levels, relief.
+    std::optional<std::string> scheme, mask;
+    std::string lattice = "line";       // of a mask: line, triangular, quad
+    std::optional<int> width;           // of A: taps on the line, rings else
+    std::optional<int> depth;           // decompositions
+    std::optional<std::size_t> points;  // of a curve, resampled
+    std::optional<double> threshold;    // details shorter than this are dropped
+    std::optional<std::size_t> keep;    // of the details, the longest
+    bool quincunx = false;
+    bool boundary = false;
+    bool table = false;
+    std::optional<std::filesystem::path> svg;
+
     // How the job runs.
     int threads = 0;                  // 0 = all
     std::optional<double> maxMemory;  // GB

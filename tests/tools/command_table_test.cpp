@@ -5,7 +5,7 @@ namespace isowave::tools_test {
 namespace {
 
 const std::vector<std::string> kCommands{"lod",   "analyse", "mesh", "field",     "info",
-                                         "check", "compare", "help", "completion"};
+                                         "check", "compare", "filters", "curve-levels", "relief", "help", "completion"};
 
 TEST(Help, ListsEverySubcommandAndEveryExitCode) {
     const std::string text = succeed({"--help"}).out;
