@@ -135,6 +135,10 @@ SourcePtr open(const fs::path& path, const ImageReadOptions& options) {
     if (!fs::exists(status)) throw InputError(name, "no such file or folder");
     const bool folder = fs::is_directory(status);
     if (!folder && !fs::is_regular_file(status)) throw InputError(name, "is neither a file nor a folder");
+    if (folder && options.raw)
+        throw InputError(name,
+                         "is a folder; size and type describe one headerless file; give that file, or leave "
+                         "them out for a folder of slices");
     try {
         SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
         settleGeometry(name, source->header, options);

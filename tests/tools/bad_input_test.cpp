@@ -487,6 +487,14 @@ TEST(PyramidCutShort, IsRefusedAtEveryLength) {
         std::ofstream(folder / "cut.vdb", std::ios::binary) << bytes.substr(0, length);
         const Result result = isowave({"info", (folder / "cut.vdb").string()});
         EXPECT_EQ(result.exitCode, 3) << length << " of " << bytes.size() << ": " << result.err << result.out;
+        {"HeaderlessFolder",
+         3,
+         [](const Folder& f) {
+             fs::create_directories(f / "slices");
+             std::ofstream(f / "slices/a.png") << "abc";
+             return lod(f, "slices", {"--iso", "0", "--size", "8x8x8", "--type", "int16"});
+         },
+         {"slices", "folder", "size"}},
         EXPECT_EQ(result.errorLines(), 1) << result.err;
     }
 }
