@@ -1,6 +1,7 @@
 // Headerless voxels.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 
@@ -72,7 +73,7 @@ SourcePtr openRaw(const std::filesystem::path& path, const ImageReadOptions& opt
             fmt::format("the file holds {} bytes more than {} {} voxels take; is the size right?",
                         held - needed, sizeText(layout.size), nameOf(*type)));
     const std::int64_t sliceBytes = header.sliceVoxels() * static_cast<std::int64_t>(sizeOf(*type));
-    source->slicesPerRead = std::max<std::int64_t>(1, kSlabBytes / sliceBytes);
+    source->slicesPerRead = std::clamp<std::int64_t>(kSlabBytes / sliceBytes, 1, header.size[2]);
     return source;
 }
 

@@ -545,6 +545,15 @@ TEST(Interrupt, LeavesTheFolderAsItWas) {
     // Small balls on a lattice that is no multiple of the voxel: much surface, seconds of work.
     writeNrrd(folder / "a.nrrd", size, sampled<std::int16_t>(size, [](int x, int y, int z) {
                   return 100 * (std::sin(0.61 * x) + std::sin(0.57 * y) + std::sin(0.53 * z));
+// What fits the limit is read: a headerless image takes its own size, not that of the slab it is read by.
+TEST(MemoryLimit, IsNotReachedByASmallHeaderlessImage) {
+    const Folder folder;
+    std::ofstream(folder / "a.raw", std::ios::binary) << std::string(1024, 'x');
+    const Result result = isowave(
+        {"info", (folder / "a.raw").string(), "--size", "8x8x8", "--type", "int16", "--max-memory", "0.001"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+}
+
               }));
     const auto before = folder.snapshot();
     const Arguments command = lod(folder, "a.nrrd", {"--iso", "10"});
