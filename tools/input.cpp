@@ -205,9 +205,21 @@ ImagePlan isolateLabel(Image& image, const ImageStatistics& statistics, const st
     return {"labels", 0.5, FitMethod::binary};
 }
 
+// Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
+// different may have become one there; only what was float32 in the file is still what it was.
+void refuseRoundedLabel(const Image& image, const std::string& name, double label) {
+    constexpr double kExact = 1 << 24;
+    if (std::abs(label) < kExact) return;
+    if (image.componentType == "float32" && static_cast<double>(static_cast<float>(label)) == label) return;
+    throw InputError(name, fmt::format("label {:.17g} cannot be told from its neighbours: voxels are kept as "
+                                       "float32, exact for labels below {:.0f}; renumber the labels",
+                                       label, kExact));
+}
+
 ImagePlan planFor(Image& image, const ImageStatistics& statistics, const std::string& name,
                   const Settings& settings, Console& console) {
     if (settings.label && settings.iso)
+    refuseRoundedLabel(image, name, label);
         throw UsageError("--label and --iso exclude each other; give one of them");
     if (settings.label) return isolateLabel(image, statistics, name, *settings.label);
     if (statistics.low == statistics.high)

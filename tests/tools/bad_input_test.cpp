@@ -191,6 +191,25 @@ const std::vector<BadInput>& rows() {
          },
          {"a.nrrd", "label 5", "0, 1, 2"}},
         {"NotANumber",
+        {"LabelThatFloatCannotHold",
+         3,
+         [](const Folder& f) {
+             // Both are 312782560 in float32.
+             writeNrrd(f / "a.nrrd", kSize, sampled<std::int32_t>(kSize, [](int x, int y, int) {
+                           return x < 6 || y < 6 ? 0 : x < 12 ? 312782570 : 312782574;
+                       }));
+             return lod(f, "a.nrrd", {"--label", "312782574"});
+         },
+         {"a.nrrd", "label 312782574", "float32", "16777216", "renumber"}},
+        {"LabelThatRoundingMakes",
+         3,
+         [](const Folder& f) {
+             writeNrrd(f / "a.nrrd", kSize, sampled<std::int32_t>(kSize, [](int x, int y, int) {
+                           return x < 6 || y < 6 ? 0 : 16777217;
+                       }));
+             return lod(f, "a.nrrd", {"--label", "16777216"});
+         },
+         {"a.nrrd", "label 16777216", "float32", "renumber"}},
          3,
          [](const Folder& f) {
              writeImageWith(f / "a.nrrd", std::numeric_limits<float>::quiet_NaN());

@@ -30,6 +30,7 @@ template <class T>
 const char* nrrdType() {
     if constexpr (std::is_same_v<T, std::uint8_t>) return "uint8";
     if constexpr (std::is_same_v<T, std::int16_t>) return "int16";
+    if constexpr (std::is_same_v<T, std::int32_t>) return "int32";
     if constexpr (std::is_same_v<T, float>) return "float";
 }
 
