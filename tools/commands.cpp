@@ -309,7 +309,8 @@ constexpr Option kOptions[] = {
     // How the job runs.
     {"--threads", "N", "all", "threads to use; the result does not depend on it, to the bit", kAll,
      [](Settings& s, const std::string& v) { s.threads = static_cast<int>(integer(v, 1, 4096)); }},
-    {"--max-memory", "GB", "70 % of this computer's", "refuse jobs that would take more", kImages,
+    {"--max-memory", "GB", "70 % of this computer's",
+     "refuse images, meshes and level sets that would take more, as far as can be told beforehand", kImages,
      [](Settings& s, const std::string& v) { s.maxMemory = positive(v); }},
     {"--quiet", "", "", "no progress and no remarks on standard error", kQuiet,
      [](Settings& s, const std::string&) { s.quiet = true; }},

@@ -26,10 +26,13 @@ constexpr std::size_t kMaxLabels = 64;
 // Voxels along the longest axis of a mesh when nothing is said.
 constexpr std::int64_t kDefaultVoxels = 256;
 
-// What lod over a mesh takes at its peak, for each lattice point of the distances' band: the field, one mesh of
-// the ladder, level 0 and the search trees. Seen: 119 to 134 for parts of 3 to 17 million points, and 90 MB that
-// the program needs anyway.
+// What lod takes at its peak: the field, one mesh of the ladder, level 0 and the search trees; 60 to 90 MB that
+// the program needs anyway come on top.
+// Distance fit, for each lattice point of the distances' band. Seen: 119 to 134 for parts of 3 to 17 million.
 constexpr double kBytesPerBandPoint = 150;
+// Binary fit, for each node. Seen: 743 to 796, as what a torus of 96 and 140 voxels takes more than one of 48
+// and 96.
+constexpr double kBytesPerNode = 750;
 
 constexpr double kDefaultMemoryShare = 0.7;
 
@@ -148,16 +151,27 @@ Json fitJson(const Fitting& fitting, const FitReport& report) {
     return json;
 }
 
-// nodes(), distance(): make what the method needs.
-template <class MakeNodes, class MakeDistance>
-void fit(Solid& solid, const Fitting& fitting, MakeNodes nodes, MakeDistance distance, Console& console,
-         StageClock& clock) {
+void refuseTooLarge(const std::string& name, double bytes, const Settings& settings, const char* remedy) {
+    const double limit = memoryLimit(settings);
+    if (bytes <= limit) return;
+    throw InputError(
+        name, fmt::format("would take about {} of memory, over the limit of {}; {}, or raise the limit "
+                          "with --max-memory GB",
+                          bytesText(bytes), bytesText(limit), remedy));
+}
+
+// nodes(), distance(): make what the method needs. allow(bytes): throws when the rest of the job may not take
+// that.
+template <class MakeNodes, class MakeDistance, class Allow>
+void fit(Solid& solid, const Fitting& fitting, MakeNodes nodes, MakeDistance distance, Allow allow,
+         Console& console, StageClock& clock) {
     FitReport report;
     if (fitting.method == FitMethod::binary) {
         const NodeCollection collection = [&] {
             const StageClock::Scope scope(clock, "nodes");
             return nodes();
         }();
+        allow(kBytesPerNode * static_cast<double>(collection.nodeCount()));
         const StageClock::Scope scope(clock, "fit");
         solid.field = fitBinary(collection, fitting.binary, &report, console.progress());
     } else {
@@ -165,6 +179,7 @@ void fit(Solid& solid, const Fitting& fitting, MakeNodes nodes, MakeDistance dis
             const StageClock::Scope scope(clock, "distance");
             return distance();
         }();
+        allow(kBytesPerBandPoint * static_cast<double>(grid->activeVoxelCount()));
         const StageClock::Scope scope(clock, "fit");
         solid.field = fitDistance(*grid, fitting.distance, &report, console.progress());
     }
@@ -191,20 +206,6 @@ bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
     return image.integral && statistics.low >= 0 && !statistics.distinct.empty();
 }
 
-// --label L: the image becomes 1 where it was L and 0 elsewhere.
-ImagePlan isolateLabel(Image& image, const ImageStatistics& statistics, const std::string& name,
-                       double label) {
-    const auto wanted = static_cast<float>(label);
-    if (std::find(image.values.begin(), image.values.end(), wanted) == image.values.end())
-        throw InputError(name, statistics.distinct.empty()
-                                   ? fmt::format("no voxel has the value {:g}; values run from {:g} to {:g}",
-                                                 label, statistics.low, statistics.high)
-                                   : fmt::format("no voxel has the label {:g}; labels found: {}", label,
-                                                 labelList(statistics.distinct)));
-    for (float& value : image.values) value = value == wanted ? 1.f : 0.f;
-    return {"labels", 0.5, FitMethod::binary};
-}
-
 // Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
 // different may have become one there; only what was float32 in the file is still what it was.
 void refuseRoundedLabel(const Image& image, const std::string& name, double label) {
@@ -216,10 +217,24 @@ void refuseRoundedLabel(const Image& image, const std::string& name, double labe
                                        label, kExact));
 }
 
+// --label L: the image becomes 1 where it was L and 0 elsewhere.
+ImagePlan isolateLabel(Image& image, const ImageStatistics& statistics, const std::string& name,
+                       double label) {
+    refuseRoundedLabel(image, name, label);
+    const auto wanted = static_cast<float>(label);
+    if (std::find(image.values.begin(), image.values.end(), wanted) == image.values.end())
+        throw InputError(name, statistics.distinct.empty()
+                                   ? fmt::format("no voxel has the value {:g}; values run from {:g} to {:g}",
+                                                 label, statistics.low, statistics.high)
+                                   : fmt::format("no voxel has the label {:g}; labels found: {}", label,
+                                                 labelList(statistics.distinct)));
+    for (float& value : image.values) value = value == wanted ? 1.f : 0.f;
+    return {"labels", 0.5, FitMethod::binary};
+}
+
 ImagePlan planFor(Image& image, const ImageStatistics& statistics, const std::string& name,
                   const Settings& settings, Console& console) {
     if (settings.label && settings.iso)
-    refuseRoundedLabel(image, name, label);
         throw UsageError("--label and --iso exclude each other; give one of them");
     if (settings.label) return isolateLabel(image, statistics, name, *settings.label);
     if (statistics.low == statistics.high)
@@ -327,7 +342,8 @@ Solid loadImageSolid(const fs::path& path, const Settings& settings, Console& co
             release();
             return grid;
         },
-        console, clock);
+        [&](double bytes) { refuseTooLarge(name, bytes, settings, "crop or downsample it"); }, console,
+        clock);
     solid.input = imageJson(path, image, plan, statistics, settings);
     solid.openBorder = borderOf(solid.input);
     solid.space = Space::lps;
@@ -345,15 +361,6 @@ double voxelSizeFor(const TriangleMesh& mesh, const Settings& settings, const st
     if (!settings.voxels)
         console.say(fmt::format("{}: --voxels {} along the longest axis", name, kDefaultVoxels));
     return voxelForCount(mesh, static_cast<double>(settings.voxels.value_or(kDefaultVoxels)));
-}
-
-void refuseTooLarge(const std::string& name, double bytes, const Settings& settings, const char* remedy) {
-    const double limit = memoryLimit(settings);
-    if (bytes <= limit) return;
-    throw InputError(
-        name, fmt::format("would take about {} of memory, over the limit of {}; {}, or raise the limit "
-                          "with --max-memory GB",
-                          bytesText(bytes), bytesText(limit), remedy));
 }
 
 std::array<double, 3> extentOf(const TriangleMesh& mesh) {
@@ -386,9 +393,10 @@ Solid loadMeshSolid(const fs::path& path, const Settings& settings, Console& con
     for (const std::string& note : repair.notes) console.say(note);
 
     const Fitting fitting = fittingOf(settings, FitMethod::distance);
+    constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
     const double voxel = voxelSizeFor(mesh, settings, name, console);
     refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, fitting.distance.halfWidth),
-                   settings, "give fewer --voxels or a larger --voxel");
+                   settings, kRemedy);
     const auto transform = transformForMesh(mesh, voxel);
     Json dimensions = Json::array();
     for (const double extent : extentOf(mesh))
@@ -403,7 +411,8 @@ Solid loadMeshSolid(const fs::path& path, const Settings& settings, Console& con
                                 console.progress());
     };
     fit(
-        solid, fitting, [&] { return nodesOfDistance(*distance()); }, distance, console, clock);
+        solid, fitting, [&] { return nodesOfDistance(*distance()); }, distance,
+        [&](double bytes) { refuseTooLarge(name, bytes, settings, kRemedy); }, console, clock);
 
     Json& json = solid.input;
     json["path"] = path.string();
@@ -464,7 +473,9 @@ Solid loadLevelSetSolid(const fs::path& path, const Settings& settings, Console&
     json["inverted"] = settings.invert;
     json["space"] = "unspecified";
     fit(
-        solid, fitting, [&] { return nodesOfDistance(*distance()); }, distance, console, clock);
+        solid, fitting, [&] { return nodesOfDistance(*distance()); }, distance,
+        [&](double bytes) { refuseTooLarge(name, bytes, settings, "resample it to larger voxels"); }, console,
+        clock);
     requireSurface(*solid.field, name,
                    fmt::format("no lattice point lies below {:g}, or none above it", iso));
     return solid;
@@ -507,7 +518,8 @@ Solid loadPyramidSolid(const fs::path& path, StageClock& clock) {
     return solid;
 }
 
-// memory.max of the control group that this process runs in, when there is one.
+// memory.max of the root of the control groups that this process sees: a container's own limit inside one,
+// and nothing outside, where the root has no limit.
 std::optional<double> containerMemory() {
     std::ifstream file("/sys/fs/cgroup/memory.max");
     double bytes = 0;

@@ -1,6 +1,7 @@
 // Every row of "bad input": the documented exit code, exactly one line on standard error that names what is
 // wrong, nothing left behind.
 #include <fmt/format.h>
+#include <openvdb/tools/LevelSetSphere.h>
 
 #include <limits>
 
@@ -296,6 +297,31 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.stl", {"--voxels", "100000"});
          },
          {"a.stl", "memory", "GB", "--max-memory"}},
+        {"MaskOverTheMemoryLimit",
+         3,
+         [](const Folder& f) {
+             const Size size{36, 36, 20};  // read in 130 kB
+             writeNrrd(f / "a.nrrd", size, ringAndBall(size, 10, 4, false));
+             return lod(f, "a.nrrd", {"--max-memory", "0.001"});
+         },
+         {"a.nrrd", "memory", "MB", "crop", "--max-memory"}},
+        {"GreyImageOverTheMemoryLimit",
+         3,
+         [](const Folder& f) {
+             const Size size{36, 36, 36};  // read in 280 kB
+             writeNrrd(f / "a.nrrd", size, greyBall(size, 14));
+             return lod(f, "a.nrrd", {"--iso", "0", "--max-memory", "0.001"});
+         },
+         {"a.nrrd", "memory", "MB", "crop", "--max-memory"}},
+        {"LevelSetOverTheMemoryLimit",
+         3,
+         [](const Folder& f) {
+             openvdb::initialize();
+             const auto ball = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(12, {}, 1);
+             writeVdb(f / "a.vdb", {ball}, openvdb::MetaMap());
+             return lod(f, "a.vdb", {"--max-memory", "0.001"});
+         },
+         {"a.vdb", "memory", "MB", "resample", "--max-memory"}},
         {"VoxelsTooCoarse",
          3,
          [](const Folder& f) {
