@@ -25,6 +25,12 @@ double diagonalOf(const TriangleMesh& mesh) {
     return mesh.points.empty() ? 0 : std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
 }
 
+// In per cent; a surface that is flat, or open in the right way, has the volume 0.
+std::string relativeText(double difference, double whole) {
+    const double percent = 100 * difference / whole;
+    return std::isfinite(percent) ? fmt::format("{:+.3g}", percent) : "-";
+}
+
 Json sideJson(const OneSidedDistance& side) {
     return {{"mean", finite(side.mean)},
             {"rms", finite(side.rms)},
@@ -43,9 +49,9 @@ std::string textOf(const MeshComparison& c) {
     side("B -> A", c.bToA);
     table.row(
         {"symmetric", shortNumber(c.mean), shortNumber(c.rms), shortNumber(c.max), shortNumber(c.maxBound)});
-    return table.text() + fmt::format("volume A {}, B {}, B - A {} ({:+.3g} %)\n", shortNumber(c.volumeA),
+    return table.text() + fmt::format("volume A {}, B {}, B - A {} ({} %)\n", shortNumber(c.volumeA),
                                       shortNumber(c.volumeB), shortNumber(c.volumeDifference),
-                                      100 * c.volumeDifference / c.volumeA);
+                                      relativeText(c.volumeDifference, c.volumeA));
 }
 
 }  // namespace
