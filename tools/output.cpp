@@ -18,6 +18,11 @@ fs::path tidy(const fs::path& path) {
     return result;
 }
 
+void refuseFolder(const fs::path& place) {
+    if (fs::is_directory(place))
+        throw OperationError(place.string(), "is a folder, where a result should go; move it away");
+}
+
 }  // namespace
 
 MadeFolders::MadeFolders(const fs::path& folder) {
@@ -66,31 +71,56 @@ OutputFolder::~OutputFolder() {
 }
 
 fs::path OutputFolder::place(const std::string& name) {
+    refuseFolder(folder_ / name);
     names_.push_back(name);
     return hidden_ / name;
 }
 
 void OutputFolder::commit() {
     std::error_code error;
-    const auto failed = [&](const fs::path& place) {
-        return OperationError(place.string(), "cannot put the finished file here (" + error.message() + ")");
-    };
     if (!fs::exists(folder_)) {
         fs::rename(hidden_, folder_, error);  // all at once
-        if (error) throw failed(folder_);
+        if (error)
+            throw OperationError(folder_.string(),
+                                 "cannot put the finished files here (" + error.message() + ")");
     } else {
-        for (const std::string& name : names_)
-            if (fs::is_directory(folder_ / name))
-                throw OperationError((folder_ / name).string(),
-                                     "is a folder, where a result should go; move it away");
-        for (const std::string& name : names_) {
-            fs::rename(hidden_ / name, folder_ / name, error);
-            if (error) throw failed(folder_ / name);
-        }
-        fs::remove(hidden_, error);
+        for (const std::string& name : names_) refuseFolder(folder_ / name);
+        replaceFiles();
+        fs::remove_all(hidden_, error);
     }
     hidden_.clear();
     parents_.keep();
+}
+
+// A list of renamings of which all are done, or none.
+//   old files:  folder/name        -> hidden/replaced/name
+//   new files:  hidden/name        -> folder/name
+// Undone backwards, each in turn, when one fails.
+void OutputFolder::replaceFiles() {
+    const fs::path replaced = hidden_ / "replaced";
+    std::vector<std::pair<fs::path, fs::path>> done;
+    std::error_code error;
+    const auto move = [&](const fs::path& from, const fs::path& to) {
+        fs::rename(from, to, error);
+        if (!error) done.emplace_back(from, to);
+        return !error;
+    };
+    const auto replace = [&](const std::string& name) {
+        std::error_code ignored;
+        const bool there = fs::exists(fs::symlink_status(folder_ / name, ignored));
+        return (!there || move(folder_ / name, replaced / name)) && move(hidden_ / name, folder_ / name);
+    };
+    fs::create_directory(replaced, error);
+    if (error)
+        throw OperationError(folder_.string(), "cannot move the old files aside (" + error.message() + ")");
+    for (const std::string& name : names_) {
+        if (replace(name)) continue;
+        std::error_code ignored;
+        for (auto step = done.rbegin(); step != done.rend(); ++step)
+            fs::rename(step->second, step->first, ignored);
+        throw OperationError((folder_ / name).string(),
+                             "cannot put the finished file here (" + error.message() + ")");
+    }
 }
 
 std::string OutputFolder::publicText(std::string message) const {

@@ -38,14 +38,17 @@ class OutputFolder {
     const std::filesystem::path& folder() const { return folder_; }
     // The last component of the folder's name, which its files start with.
     std::string name() const { return folder_.filename().string(); }
-    // Where to write the file that will be folder()/name.
+    // Where to write the file that will be folder()/name. Throws OperationError when a folder has that name.
     std::filesystem::path place(const std::string& name);
-    // Puts all files into the folder, over those of the same names; other files there stay.
+    // Puts all files into the folder, in place of those of the same names; other files there stay. Throws
+    // OperationError, and the folder is as it was.
     void commit();
     // Names the folder where a message names the hidden one.
     std::string publicText(std::string message) const;
 
   private:
+    void replaceFiles();
+
     std::filesystem::path folder_;
     MadeFolders parents_;
     std::filesystem::path hidden_;

@@ -1,0 +1,48 @@
+// OutputFolder: all files change, or none.
+#include "tools/output.h"
+#include "base/error.h"
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+// A folder with an earlier result in it.
+class EarlierResult : public ::testing::Test {
+  protected:
+    EarlierResult() {
+        fs::create_directories(folder / "out");
+        for (const char* name : {"a", "b", "c", "mine"})
+            write(folder / "out" / name, std::string("old ") + name);
+    }
+    Folder folder;
+};
+
+TEST_F(EarlierResult, IsReplacedFileByFile) {
+    tools::OutputFolder out(folder / "out");
+    for (const char* name : {"a", "c", "new"}) write(out.place(name), std::string("new ") + name);
+    out.commit();
+    EXPECT_EQ(folder.snapshot(), (std::map<std::string, std::string>{{"out", "(folder)"},
+                                                                     {"out/a", "new a"},
+                                                                     {"out/b", "old b"},
+                                                                     {"out/c", "new c"},
+                                                                     {"out/mine", "old mine"},
+                                                                     {"out/new", "new new"}}));
+}
+
+// A file that was promised but never written is one that cannot be renamed.
+TEST_F(EarlierResult, ComesBackWhenARenamingHalfWayFails) {
+    const auto before = folder.snapshot();
+    {
+        tools::OutputFolder out(folder / "out");
+        for (const char* name : {"a", "new"}) write(out.place(name), std::string("new ") + name);
+        out.place("b");
+        write(out.place("c"), "new c");
+        EXPECT_THROW(out.commit(), OperationError);
+    }
+    EXPECT_EQ(folder.snapshot(), before);
+}
+
+}  // namespace
+}  // namespace isowave::tools_test
