@@ -202,6 +202,7 @@ TEST_F(BallLadder, EndsWhereTheSolidVanishes) {
     const Json levels = report()["levels"];
     for (const Json& level : levels) {
         const bool vanished = level["triangles"] == 0;
+    ASSERT_EQ(levels.back()["triangles"], 0);
         EXPECT_EQ(level["file"].is_null(), vanished);
         if (vanished) {
             EXPECT_EQ(level, levels.back()) << "nothing comes after it";
