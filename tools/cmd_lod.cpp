@@ -18,6 +18,8 @@ namespace isowave::tools {
 namespace {
 
 // Which steps are written, and what their files are called.
+constexpr std::int64_t kControlPointsOfOneNode = 4 * 4 * 4;
+
 class Wanted {
   public:
     Wanted(const Settings& settings, std::string name, MeshFormat format)
@@ -185,8 +187,11 @@ PyramidCounts climb(Solid solid, const Wanted& wanted, Ladder& ladder, const std
                          fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", pyramid.stepCount(),
                                      pyramid.stepCount() / kStepsPerLevel, wanted.first()));
     if (wanted.last() && *wanted.last() > pyramid.stepCount())
-        console.say(
-            fmt::format("{}: one node is left at step {}; the ladder ends there", name, pyramid.stepCount()));
+        console.say(fmt::format("{}: {} step {}", name,
+                                pyramid.coarsest.controlPointCount() == kControlPointsOfOneNode
+                                    ? "one node is left; the ladder ends at"
+                                    : "the ladder ends at",
+                                pyramid.stepCount()));
     return {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid)};
 }
 

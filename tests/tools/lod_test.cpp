@@ -3,6 +3,8 @@
 
 #include "tests/tools/inputs.h"
 #include "tests/tools/run_isowave.h"
+#include "wavelets/pyramid.h"
+#include "wavelets/pyramid_file.h"
 
 namespace isowave::tools_test {
 namespace {
@@ -394,6 +396,30 @@ TEST(MeshLadder, LiftsTheMemoryLimitWhenTold) {
     };
     EXPECT_EQ(with("0.001"), 3);
     EXPECT_EQ(with("8"), 0);
+}
+
+// ---- endings ----
+
+TEST(CutPyramid, EndsTheLadderWithoutClaimingThatOneNodeIsLeft) {
+    const Folder folder;
+    const Size size{32, 32, 32};
+    writeNrrd(folder / "ball.nrrd", size, greyBall(size, 9));
+    succeed(
+        {"analyse", (folder / "ball.nrrd").string(), "--iso", "0", "-o", (folder / "whole.vdb").string()});
+    const auto lod = [&](const char* name) {
+        return succeed({"lod", (folder / name).string(), "--levels", "0..40", "-o", (folder / "o").string()})
+            .err;
+    };
+    const std::string whole = lod("whole.vdb");
+    EXPECT_NE(whole.find("one node is left; the ladder ends at step"), std::string::npos) << whole;
+
+    const wavelets::Pyramid pyramid = wavelets::readPyramid(folder / "whole.vdb");
+    wavelets::Pyramid cut = wavelets::analyse(pyramid.field(0), {.maxSteps = 2});
+    ASSERT_GT(cut.coarsest.controlPointCount(), 64);
+    wavelets::writePyramid(folder / "cut.vdb", cut);
+    const std::string early = lod("cut.vdb");
+    EXPECT_EQ(early.find("one node"), std::string::npos) << early;
+    EXPECT_NE(early.find("the ladder ends at step 2"), std::string::npos) << early;
 }
 
 }  // namespace
