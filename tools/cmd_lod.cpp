@@ -255,15 +255,17 @@ int runLod(const Settings& settings, Console& console) {
         report["peak_memory_bytes"] = peakMemoryBytes();
         report["threads"] = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 
+        // What can fail for want of room comes first; then only names change.
         AtomicFile file(out.place("report.json"));
         writeJson(file, report);
         file.commit();
-        console.progress().check();
         if (copy) writeJson(*copy, report);
-        out.commit();
-        if (copy) copy->commit();
+        console.progress().check();
         console.print(toStdout ? textOf(report)
                                : tableOf(report, space == Space::unspecified ? "" : " [mm]"));
+        console.flush();
+        out.commit();
+        if (copy) copy->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
     }

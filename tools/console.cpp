@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "base/error.h"
+
 namespace isowave::tools {
 namespace {
 
@@ -37,6 +39,10 @@ Console::~Console() { clearProgress(); }
 void Console::print(std::string_view text) {
     clearProgress();
     std::cout << text;
+}
+
+void Console::flush() {
+    if (!std::cout.flush()) throw OperationError("standard output could not be written; is the disk full?");
 }
 
 void Console::say(std::string_view line) {

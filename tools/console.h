@@ -25,6 +25,8 @@ class Console {
 
     // A result, to standard output.
     void print(std::string_view text);
+    // Results that were printed are where they should be. Throws OperationError (a full disk behind a pipe).
+    void flush();
     // A remark (a decision, a default that was taken), one line to standard error: at once on a terminal,
     // otherwise when finish() is called, so that a run that fails leaves exactly one line there, the reason.
     void say(std::string_view line);

@@ -75,7 +75,7 @@ std::string textOf(const Json& json) {
 
 void writeJson(AtomicFile& file, const Json& json) {
     try {
-        file.stream() << textOf(json);
+        file.stream() << textOf(json) << std::flush;
     } catch (const std::ios_base::failure&) {
         throw OperationError(file.place().string(),
                              std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");

@@ -61,7 +61,7 @@ void putTopology(Json& json, const MeshTopology& topology);
 // Indented, one trailing newline; file names that are not UTF-8 get replacement characters.
 std::string textOf(const Json& json);
 
-// Into an open file; commit() is the caller's.
+// Into an open file, all of it: a full disk is found here. commit() is the caller's. Throws OperationError.
 void writeJson(AtomicFile& file, const Json& json);
 
 // Columns aligned to the right, the first one to the left; headers carry the units.

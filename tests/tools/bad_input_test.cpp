@@ -191,7 +191,6 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.nrrd", {"--label", "5"});
          },
          {"a.nrrd", "label 5", "0, 1, 2"}},
-        {"NotANumber",
         {"LabelThatFloatCannotHold",
          3,
          [](const Folder& f) {
@@ -211,6 +210,7 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.nrrd", {"--label", "16777216"});
          },
          {"a.nrrd", "label 16777216", "float32", "renumber"}},
+        {"NotANumber",
          3,
          [](const Folder& f) {
              writeImageWith(f / "a.nrrd", std::numeric_limits<float>::quiet_NaN());
@@ -359,6 +359,21 @@ const std::vector<BadInput>& rows() {
              return Arguments{"lod", (f / "a.nrrd").string(), "--iso", "0", "-o", (f / "file").string()};
          },
          {"file", "folder"}},
+        {"ReportToAFolder",
+         1,
+         [](const Folder& f) {
+             writeBall(f / "a.nrrd");
+             return lod(f, "a.nrrd", {"--iso", "0", "--json", f.path().string()});
+         },
+         {"folder"}},
+        {"MeshThatIsAFolderLeavesNoReport",
+         1,
+         [](const Folder& f) {
+             writeBall(f / "a.nrrd");
+             fs::create_directories(f / "out/part/part_L0.ply");
+             return lod(f, "a.nrrd", {"--iso", "0", "--json", (f / "copy.json").string()});
+         },
+         {"part_L0.ply", "folder"}},
         {"OutputFolderThatNobodyMayWrite",
          1,
          [](const Folder& f) {
@@ -472,6 +487,14 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.raw", {"--iso", "0", "--size", "8x8x8"});
          },
          {"--type"}},
+        {"HeaderlessFolder",
+         3,
+         [](const Folder& f) {
+             fs::create_directories(f / "slices");
+             std::ofstream(f / "slices/a.png") << "abc";
+             return lod(f, "slices", {"--iso", "0", "--size", "8x8x8", "--type", "int16"});
+         },
+         {"slices", "folder", "size"}},
         {"HeaderlessTooShort",
          3,
          [](const Folder& f) {
@@ -522,6 +545,15 @@ TEST(BadInputTable, IsVariedFromInputsThatAreFine) {
     EXPECT_EQ(isowave(lod(folder, "a.off", {"--voxels", "24"})).exitCode, 0);
 }
 
+// What fits the limit is read: a headerless image takes its own size, not that of the slab it is read by.
+TEST(MemoryLimit, IsNotReachedByASmallHeaderlessImage) {
+    const Folder folder;
+    std::ofstream(folder / "a.raw", std::ios::binary) << std::string(1024, 'x');
+    const Result result = isowave(
+        {"info", (folder / "a.raw").string(), "--size", "8x8x8", "--type", "int16", "--max-memory", "0.001"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+}
+
 // Every byte count from nothing to all but one, in steps, of a pyramid.
 TEST(PyramidCutShort, IsRefusedAtEveryLength) {
     const Folder folder;
@@ -532,14 +564,6 @@ TEST(PyramidCutShort, IsRefusedAtEveryLength) {
         std::ofstream(folder / "cut.vdb", std::ios::binary) << bytes.substr(0, length);
         const Result result = isowave({"info", (folder / "cut.vdb").string()});
         EXPECT_EQ(result.exitCode, 3) << length << " of " << bytes.size() << ": " << result.err << result.out;
-        {"HeaderlessFolder",
-         3,
-         [](const Folder& f) {
-             fs::create_directories(f / "slices");
-             std::ofstream(f / "slices/a.png") << "abc";
-             return lod(f, "slices", {"--iso", "0", "--size", "8x8x8", "--type", "int16"});
-         },
-         {"slices", "folder", "size"}},
         EXPECT_EQ(result.errorLines(), 1) << result.err;
     }
 }
@@ -553,6 +577,19 @@ TEST(FullDisk, LeavesNothingOfALadder) {
     const Result result = isowave(lod(folder, "a.nrrd", {"--iso", "0"}), {.largestFile = 1000});
     EXPECT_EQ(result.exitCode, 1) << result.err;
     EXPECT_EQ(result.errorLines(), 1) << result.err;
+    EXPECT_EQ(folder.snapshot(), before);
+}
+
+TEST(FullDisk, BehindStandardOutputLeavesNothingOfALadder) {
+    const Folder folder;
+    writeBall(folder / "a.nrrd");
+    const auto before = folder.snapshot();
+    const Result result =
+        isowave(lod(folder, "a.nrrd", {"--iso", "0", "--json", (folder / "copy.json").string()}),
+                {.standardOutput = "/dev/full"});
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_EQ(result.errorLines(), 1) << result.err;
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
     EXPECT_EQ(folder.snapshot(), before);
 }
 
@@ -590,15 +627,6 @@ TEST(Interrupt, LeavesTheFolderAsItWas) {
     // Small balls on a lattice that is no multiple of the voxel: much surface, seconds of work.
     writeNrrd(folder / "a.nrrd", size, sampled<std::int16_t>(size, [](int x, int y, int z) {
                   return 100 * (std::sin(0.61 * x) + std::sin(0.57 * y) + std::sin(0.53 * z));
-// What fits the limit is read: a headerless image takes its own size, not that of the slab it is read by.
-TEST(MemoryLimit, IsNotReachedByASmallHeaderlessImage) {
-    const Folder folder;
-    std::ofstream(folder / "a.raw", std::ios::binary) << std::string(1024, 'x');
-    const Result result = isowave(
-        {"info", (folder / "a.raw").string(), "--size", "8x8x8", "--type", "int16", "--max-memory", "0.001"});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
-}
-
               }));
     const auto before = folder.snapshot();
     const Arguments command = lod(folder, "a.nrrd", {"--iso", "10"});

@@ -74,6 +74,7 @@ struct Result {
 
 struct RunOptions {
     std::optional<rlim_t> largestFile = std::nullopt;  // bytes; a write beyond fails, as on a full disk
+    std::string standardOutput = {};                   // goes there; empty: is caught
     std::function<bool()> interruptWhen = {};          // SIGINT as soon as this is true
     std::chrono::seconds giveUpAfter{240};
 };
@@ -89,7 +90,8 @@ inline Result isowave(const std::vector<std::string>& arguments, const RunOption
 
     const pid_t child = ::fork();
     if (child == 0) {
-        const int out = ::open(outFile.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+        const int out = ::open((options.standardOutput.empty() ? outFile : options.standardOutput).c_str(),
+                               O_CREAT | O_TRUNC | O_WRONLY, 0600);
         const int err = ::open(errFile.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
         ::dup2(out, STDOUT_FILENO);
         ::dup2(err, STDERR_FILENO);
