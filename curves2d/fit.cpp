@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "curves2d/segment_tree.h"
+
 namespace isowave::curves2d {
 namespace {
 
@@ -313,14 +315,6 @@ void finish(RowField<Real>& field, const Shape& shape, double floor, double targ
 }
 
 // ---- distances --------------------------------------------------------------------------------------------
-
-double squaredDistance(Point p, const Segment& s) {
-    const Point along = s.b - s.a, to = p - s.a;
-    const double size = dot(along, along);
-    const double t = size > 0 ? std::clamp(dot(to, along) / size, 0.0, 1.0) : 0.0;
-    const Point off = to - t * along;
-    return dot(off, off);
-}
 
 // Signed distance to the boundary on the lattice points `where`, clamped to ±w and scaled so that ±w is ±K.
 RowField<float> distances(const Region& where, const Shape& shape, double w, double K, const Progress& progress) {
