@@ -99,6 +99,14 @@ template <class Real>
 void analyseRow(const Row<Real>& fine, std::int32_t number, double K, Lines& lines, Row<Real>& coarse,
                 StepRow<Real>& step) {
     lines.intervalsOf(fine.runs, number);
+    std::size_t coarseSize = 0, detailSize = 0;
+    for (const Interval& interval : lines.intervals) {
+        coarseSize += static_cast<std::size_t>(interval.coarseSize());
+        detailSize += static_cast<std::size_t>(interval.detailSize());
+    }
+    coarse.runs.reserve(lines.intervals.size());
+    coarse.values.reserve(coarseSize);
+    step.details.reserve(detailSize);
     FineWalk<Real> walk{fine.runs, K};
     for (const Interval& interval : lines.intervals) {
         lines.resizeFor(interval);
@@ -126,6 +134,9 @@ Row<Real> synthesiseRow(const Row<Real>* coarse, const StepRow<Real>& step, doub
         refuseParts(step.row, "the coarser field has other runs than the step");
     Row<Real> fine;
     fine.runs = step.runs;
+    std::size_t size = 0;
+    for (const KnownRun& run : step.runs) size += static_cast<std::size_t>(run.last - run.first + 1);
+    fine.values.reserve(size);
     FineWalk<Real> walk{step.runs, K};
     auto c = coarse->values.begin();
     auto d = step.details.begin();

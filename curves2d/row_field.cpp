@@ -128,6 +128,10 @@ RowField<Real> transposed(const RowField<Real>& field) {
         before = &row;
         beforeNumber = y;
     }
+    for (auto column = out.rows.begin(); column != out.rows.end(); ++column) {
+        column.value().runs.shrink_to_fit();
+        column.value().values.shrink_to_fit();
+    }
     return out;
 }
 
