@@ -67,9 +67,10 @@ Input readInput(const std::filesystem::path& path, const InputOptions& options, 
     return looksLikePolygons(path) ? readPolygonInput(path, options, progress) : readImageInput(path, options);
 }
 
-RowField<float> fit(const Shape& shape, Fit method, FitReport* report, const Progress& progress) {
-    return method == Fit::binary ? fitBinary<float>(shape, {}, report, progress)
-                                 : fitDistance<float>(shape, {}, report, progress);
+RowField<float> fit(const Shape& shape, Fit method, const DistanceFitOptions& options, FitReport* report,
+                    const Progress& progress) {
+    return method == Fit::binary ? fitBinary<float>(shape, {.K = options.K}, report, progress)
+                                 : fitDistance<float>(shape, options, report, progress);
 }
 
 std::vector<Segment> segmentsOf(const Curves& curves) {

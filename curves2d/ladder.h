@@ -19,7 +19,7 @@ namespace isowave::curves2d {
 enum class Fit { binary, distance };
 
 struct InputOptions {
-    std::optional<double> iso;   // images; without it the middle of the range of values
+    std::optional<double> iso = std::nullopt;  // images; without it the middle of the range of values
     bool invert = false;         // images
     std::int32_t pixels = 1024;  // polygons: along the longer side
 };
@@ -65,7 +65,9 @@ using LadderVisitor =
 Ladder climb(RowField<float> field, std::optional<int> lastStep, const LadderVisitor& visit,
              const Progress& progress = {});
 
-RowField<float> fit(const Shape& shape, Fit method, FitReport* report = nullptr, const Progress& progress = {});
+// options: of the distance fit.
+RowField<float> fit(const Shape& shape, Fit method, const DistanceFitOptions& options = {},
+                    FitReport* report = nullptr, const Progress& progress = {});
 
 // One-sided distance from curves to segments, sampled at least every `spacing` along every piece, at most 64
 // samples a piece.

@@ -61,6 +61,7 @@ int runField(const Settings&, Console&);
 int runInfo(const Settings&, Console&);
 int runCheck(const Settings&, Console&);
 int runCompare(const Settings&, Console&);
+int runCurves(const Settings&, Console&);
 int runHelp(const Settings&, Console&);
 int runCompletion(const Settings&, Console&);
 

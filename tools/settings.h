@@ -20,6 +20,7 @@ class UsageError : public std::runtime_error {
 };
 
 enum class FitMethod { binary, distance };
+enum class CurveFormat { svg, geojson, png, txt };
 
 // A..B, both included; without B: as far as the pyramid goes.
 struct StepRange {
@@ -67,6 +68,14 @@ struct Settings {
     bool json = false;
     bool selfIntersections = false;
     std::optional<double> sampling;  // world units between samples of a distance
+
+    // Planar curves.
+    std::optional<std::int32_t> pixels;         // along the longer side of the polygons
+    std::optional<CurveFormat> curveFormat;
+    std::optional<double> tolerance;            // pixels of level 0
+    std::optional<std::filesystem::path> sheet;
+    bool smooth = false;
+    bool table = false;
 
     // How the job runs.
     int threads = 0;                  // 0 = all
