@@ -1,9 +1,10 @@
-// compare_curves POLYGONS [PIXELS [FOLDER]]: levels of `isowave curves` beside the polyline simplifications that
-// people use, at equal numbers of points, as a markdown table; with FOLDER also pictures.
+// compare_curves POLYGONS [PIXELS [FOLDER]]: levels of `isowave curves` beside the polyline simplifications
+// that people use, at equal numbers of points, as a markdown table; with FOLDER also pictures.
 //
 //   Douglas-Peucker  vertices ranked by the distance at which the recursion would take them in
-//   Visvalingam      vertices ranked by the area of the triangle that goes when they go (Visvalingam, Whyatt 1993)
-//   CGAL             Polyline_simplification_2: Dyken et al., keeps the topology. GPL: this program only
+//   Visvalingam      vertices ranked by the area of the triangle that goes when they go (Visvalingam, Whyatt
+//   1993) CGAL             Polyline_simplification_2: Dyken et al., keeps the topology. GPL: this program
+//   only
 // A ring of fewer than three points is dropped, as the usual tools do.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Constrained_triangulation_plus_2.h>
@@ -29,10 +30,12 @@ namespace {
 using namespace isowave::curves2d;
 using Rank = std::vector<std::vector<double>>;  // by ring and point: larger = kept longer
 
-// ---- Douglas-Peucker ----------------------------------------------------------------------------------------
+// ---- Douglas-Peucker
+// ----------------------------------------------------------------------------------------
 
 // Between two kept points, the farthest from their chord comes next; none comes before the one it hangs on.
-void rankBetween(const Ring& ring, std::size_t first, std::size_t last, double limit, std::vector<double>& rank) {
+void rankBetween(const Ring& ring, std::size_t first, std::size_t last, double limit,
+                 std::vector<double>& rank) {
     if (last - first < 2) return;
     const Segment chord{ring[first], ring[last % ring.size()]};
     std::size_t best = first + 1;
@@ -63,7 +66,8 @@ Rank douglasPeucker(const std::vector<Ring>& rings) {
     return ranks;
 }
 
-// ---- Visvalingam --------------------------------------------------------------------------------------------
+// ---- Visvalingam
+// --------------------------------------------------------------------------------------------
 
 std::vector<double> visvalingamOf(const Ring& ring) {
     const std::size_t n = ring.size();
@@ -106,7 +110,8 @@ std::vector<Ring> best(const std::vector<Ring>& rings, const Rank& ranks, std::s
     std::vector<double> all;
     for (const auto& rank : ranks) all.insert(all.end(), rank.begin(), rank.end());
     count = std::min(count, all.size());
-    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count) - 1, all.end(), std::greater<>());
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count) - 1, all.end(),
+                     std::greater<>());
     const double least = all[count - 1];
     std::vector<Ring> out;
     for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -118,13 +123,15 @@ std::vector<Ring> best(const std::vector<Ring>& rings, const Rank& ranks, std::s
     return out;
 }
 
-// ---- CGAL ---------------------------------------------------------------------------------------------------
+// ---- CGAL
+// ---------------------------------------------------------------------------------------------------
 
 namespace PS = CGAL::Polyline_simplification_2;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Triangulation = CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,
-    CGAL::Triangulation_data_structure_2<PS::Vertex_base_2<Kernel>, CGAL::Constrained_triangulation_face_base_2<Kernel>>,
+    CGAL::Triangulation_data_structure_2<PS::Vertex_base_2<Kernel>,
+                                         CGAL::Constrained_triangulation_face_base_2<Kernel>>,
     CGAL::Exact_predicates_tag>>;
 
 std::vector<Ring> cgal(const std::vector<Ring>& rings, std::size_t count) {
@@ -138,7 +145,8 @@ std::vector<Ring> cgal(const std::vector<Ring>& rings, std::size_t count) {
     std::vector<Ring> out;
     for (auto c = triangulation.constraints_begin(); c != triangulation.constraints_end(); ++c) {
         Ring ring;
-        for (auto p = triangulation.points_in_constraint_begin(*c); p != triangulation.points_in_constraint_end(*c); ++p)
+        for (auto p = triangulation.points_in_constraint_begin(*c);
+             p != triangulation.points_in_constraint_end(*c); ++p)
             ring.push_back({p->x(), p->y()});
         if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
         if (ring.size() >= 3) out.push_back(std::move(ring));
@@ -146,12 +154,14 @@ std::vector<Ring> cgal(const std::vector<Ring>& rings, std::size_t count) {
     return out;
 }
 
-// ---- what is compared ---------------------------------------------------------------------------------------
+// ---- what is compared
+// ---------------------------------------------------------------------------------------
 
 std::vector<Segment> segmentsOfRings(const std::vector<Ring>& rings) {
     std::vector<Segment> segments;
     for (const Ring& ring : rings)
-        for (std::size_t i = 0; i < ring.size(); ++i) segments.push_back({ring[i], ring[(i + 1) % ring.size()]});
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            segments.push_back({ring[i], ring[(i + 1) % ring.size()]});
     return segments;
 }
 
@@ -212,7 +222,10 @@ Distances distances(const std::vector<Segment>& from, const SegmentTree& to, dou
 class Judge {
   public:
     Judge(const std::vector<Polygon>& polygons, const std::vector<Ring>& rings, const Frame& frame)
-        : frame_(frame), truth_(rasterise(polygons, fine())), segments_(segmentsOfRings(rings)), tree_(segments_) {}
+        : frame_(frame),
+          truth_(rasterise(polygons, fine())),
+          segments_(segmentsOfRings(rings)),
+          tree_(segments_) {}
 
     void row(const std::string& level, const std::string& name, const std::vector<Ring>& rings) const {
         std::size_t points = 0;
@@ -222,9 +235,10 @@ class Judge {
         const std::vector<Segment> own = segmentsOfRings(rings);
         const Distances out = distances(own, tree_, h), in = distances(segments_, SegmentTree(own), h);
         const auto percent = [&](std::int64_t n) { return 100.0 * double(n) / double(truth_.pointCount()); };
-        fmt::print("| {} | {} | {} | {} | {:+.3f} | {:.3f} | {:.2f} | {:.1f} | {:.1f} | {} |\n", level, name, points,
-                   rings.size(), percent(region.pointCount() - truth_.pointCount()), percent(differing(truth_, region)),
-                   out.rms / h, out.max / h, in.max / h, invalidRings(rings));
+        fmt::print("| {} | {} | {} | {} | {:+.3f} | {:.3f} | {:.2f} | {:.1f} | {:.1f} | {} |\n", level, name,
+                   points, rings.size(), percent(region.pointCount() - truth_.pointCount()),
+                   percent(differing(truth_, region)), out.rms / h, out.max / h, in.max / h,
+                   invalidRings(rings));
         std::cout.flush();
     }
 
@@ -257,7 +271,8 @@ int main(int argc, char** argv) {
     const PolygonInput input = readPolygons(argv[1]);
     const auto pixels = static_cast<std::int32_t>(argc > 2 ? std::atoi(argv[2]) : 4096);
     std::vector<Ring> rings;
-    for (const Polygon& polygon : input.polygons) rings.insert(rings.end(), polygon.rings.begin(), polygon.rings.end());
+    for (const Polygon& polygon : input.polygons)
+        rings.insert(rings.end(), polygon.rings.begin(), polygon.rings.end());
 
     InputOptions options;
     options.pixels = pixels;
@@ -266,26 +281,30 @@ int main(int argc, char** argv) {
     const Judge judge(input.polygons, rings, ready.shape.frame);
     const Rank dp = douglasPeucker(rings), vw = visvalingam(rings);
 
-    fmt::print("{}; {} pixels; lengths in pixels\n\n"
-               "| level | method | points | rings | area % | differing area % | rms to input | max to input | max from "
-               "input | invalid rings |\n|---|---|---|---|---|---|---|---|---|---|\n",
-               ready.kind, pixels);
+    fmt::print(
+        "{}; {} pixels; lengths in pixels\n\n"
+        "| level | method | points | rings | area % | differing area % | rms to input | max to input | max "
+        "from "
+        "input | invalid rings |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        ready.kind, pixels);
     judge.row("", "the input", rings);
-    climb(fit(ready.shape, Fit::distance), 12, [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
-        if (facts.step % 2 || facts.step == 0 || curves.rings.empty()) return;
-        const std::string level = std::to_string(facts.step / 2);
-        std::vector<Ring> own;
-        for (std::size_t r = 0; r < curves.rings.size(); ++r) own.push_back(curves.world(r));
-        const std::vector<std::pair<std::string, std::vector<Ring>>> all = {
-            {"isowave", own},
-            {"Douglas-Peucker", best(rings, dp, facts.points)},
-            {"Visvalingam", best(rings, vw, facts.points)},
-            {"CGAL, topology kept", cgal(rings, facts.points)}};
-        for (const auto& [name, result] : all) {
-            judge.row(level, name, result);
-            if (argc > 3)
-                writePng(fmt::format("{}/L{}_{}.png", argv[3], level, name.substr(0, name.find_first_of(",-"))),
-                         asCurves(result), view);
-        }
-    });
+    climb(fit(ready.shape, Fit::distance), 12,
+          [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+              if (facts.step % 2 || facts.step == 0 || curves.rings.empty()) return;
+              const std::string level = std::to_string(facts.step / 2);
+              std::vector<Ring> own;
+              for (std::size_t r = 0; r < curves.rings.size(); ++r) own.push_back(curves.world(r));
+              const std::vector<std::pair<std::string, std::vector<Ring>>> all = {
+                  {"isowave", own},
+                  {"Douglas-Peucker", best(rings, dp, facts.points)},
+                  {"Visvalingam", best(rings, vw, facts.points)},
+                  {"CGAL, topology kept", cgal(rings, facts.points)}};
+              for (const auto& [name, result] : all) {
+                  judge.row(level, name, result);
+                  if (argc > 3)
+                      writePng(fmt::format("{}/L{}_{}.png", argv[3], level,
+                                           name.substr(0, name.find_first_of(",-"))),
+                               asCurves(result), view);
+              }
+          });
 }

@@ -20,11 +20,13 @@ constexpr std::int64_t kMostPixels = std::int64_t{1} << 31;
 
 void checkSize(const std::string& name, std::int64_t width, std::int64_t height) {
     if (width < 1 || height < 1)
-        throw InputError(name, fmt::format("an image of {} x {} pixels; there is nothing in it", width, height));
+        throw InputError(name,
+                         fmt::format("an image of {} x {} pixels; there is nothing in it", width, height));
     if (width > kMostPixels / height)
-        throw InputError(name, fmt::format("an image of {} x {} pixels; at most 2^31 pixels are read. Cut it or "
-                                           "give its outline as polygons",
-                                           width, height));
+        throw InputError(name,
+                         fmt::format("an image of {} x {} pixels; at most 2^31 pixels are read. Cut it or "
+                                     "give its outline as polygons",
+                                     width, height));
 }
 
 void refuseNotFinite(const std::string& name, const Bitmap& bitmap) {
@@ -32,14 +34,16 @@ void refuseNotFinite(const std::string& name, const Bitmap& bitmap) {
                                       [](float v) { return std::isfinite(v); });
     if (bad == bitmap.values.end()) return;
     const std::int64_t i = bad - bitmap.values.begin();
-    throw InputError(name, fmt::format("pixel ({}, {}) is {}; {} of {} pixels are not finite. Replace them first",
-                                       i % bitmap.width, i / bitmap.width, *bad,
-                                       std::count_if(bitmap.values.begin(), bitmap.values.end(),
-                                                     [](float v) { return !std::isfinite(v); }),
-                                       bitmap.values.size()));
+    throw InputError(name,
+                     fmt::format("pixel ({}, {}) is {}; {} of {} pixels are not finite. Replace them first",
+                                 i % bitmap.width, i / bitmap.width, *bad,
+                                 std::count_if(bitmap.values.begin(), bitmap.values.end(),
+                                               [](float v) { return !std::isfinite(v); }),
+                                 bitmap.values.size()));
 }
 
-// ---- PGM, PBM: "P" digit, numbers with comments between them, pixels as text or bytes ------------------------
+// ---- PGM, PBM: "P" digit, numbers with comments between them, pixels as text or bytes
+// ------------------------
 
 class Pnm {
   public:
@@ -54,11 +58,14 @@ class Pnm {
         checkSize(name_, bitmap.width, bitmap.height);
         const int most = bits ? 1 : number("largest value");
         if (most < 1 || most > 65535)
-            throw InputError(name_, fmt::format("its largest value is {}; between 1 and 65535 is possible", most));
-        bitmap.values.resize(static_cast<std::size_t>(bitmap.width) * static_cast<std::size_t>(bitmap.height));
+            throw InputError(name_,
+                             fmt::format("its largest value is {}; between 1 and 65535 is possible", most));
+        bitmap.values.resize(static_cast<std::size_t>(bitmap.width) *
+                             static_cast<std::size_t>(bitmap.height));
         if (!text) ++at_;  // one white space behind the header
         if (text) {
-            for (float& v : bitmap.values) v = bits ? (bit() ? 0.0f : 255.0f) : static_cast<float>(number("pixel"));
+            for (float& v : bitmap.values)
+                v = bits ? (bit() ? 0.0f : 255.0f) : static_cast<float>(number("pixel"));
         } else if (bits) {
             readBits(bitmap);
         } else {
@@ -69,11 +76,12 @@ class Pnm {
 
   private:
     [[noreturn]] void truncated() const {
-        throw InputError(name_, fmt::format("ends after {} bytes, before its last pixel; it is truncated",
-                                            bytes_.size()));
+        throw InputError(
+            name_, fmt::format("ends after {} bytes, before its last pixel; it is truncated", bytes_.size()));
     }
     void skipBlanks() {
-        while (at_ < bytes_.size() && (std::isspace(static_cast<unsigned char>(bytes_[at_])) || bytes_[at_] == '#')) {
+        while (at_ < bytes_.size() &&
+               (std::isspace(static_cast<unsigned char>(bytes_[at_])) || bytes_[at_] == '#')) {
             if (bytes_[at_] == '#')
                 while (at_ < bytes_.size() && bytes_[at_] != '\n') ++at_;
             else
@@ -85,7 +93,8 @@ class Pnm {
         if (at_ == bytes_.size()) truncated();
         std::int64_t value = 0;
         const std::size_t begin = at_;
-        while (at_ < bytes_.size() && std::isdigit(static_cast<unsigned char>(bytes_[at_])) && value < (1 << 30))
+        while (at_ < bytes_.size() && std::isdigit(static_cast<unsigned char>(bytes_[at_])) &&
+               value < (1 << 30))
             value = 10 * value + (bytes_[at_++] - '0');
         if (at_ == begin || value >= (1 << 30))
             throw InputError(name_, fmt::format("no number at byte {}, where the {} should be", at_, what));
@@ -111,7 +120,8 @@ class Pnm {
         if (bytes_.size() < at_ + size * bitmap.values.size()) truncated();
         for (float& v : bitmap.values) {
             int value = 0;
-            for (std::size_t k = 0; k < size; ++k) value = 256 * value + static_cast<unsigned char>(bytes_[at_++]);
+            for (std::size_t k = 0; k < size; ++k)
+                value = 256 * value + static_cast<unsigned char>(bytes_[at_++]);
             v = static_cast<float>(value);
         }
     }
@@ -120,7 +130,8 @@ class Pnm {
     std::size_t at_ = 2;
 };
 
-// ---- PNG, TIFF, BMP ------------------------------------------------------------------------------------------
+// ---- PNG, TIFF, BMP
+// ------------------------------------------------------------------------------------------
 
 // Components of a pixel -> one number. full: the value of full opacity.
 template <class T>
@@ -145,13 +156,14 @@ void convert(const std::vector<char>& bytes, unsigned components, Bitmap& bitmap
 }
 
 itk::ImageIOBase::Pointer readerFor(const std::string& name) {
-    const std::vector<itk::ImageIOBase::Pointer> readers = {
-        itk::PNGImageIO::New().GetPointer(), itk::TIFFImageIO::New().GetPointer(),
-        itk::BMPImageIO::New().GetPointer()};
+    const std::vector<itk::ImageIOBase::Pointer> readers = {itk::PNGImageIO::New().GetPointer(),
+                                                            itk::TIFFImageIO::New().GetPointer(),
+                                                            itk::BMPImageIO::New().GetPointer()};
     for (const auto& reader : readers)
         if (reader->CanReadFile(name.c_str())) return reader;
-    throw InputError(name, "neither PNG, TIFF, BMP, PGM nor PBM; expected an image, or polygons in .geojson, "
-                           ".json or .txt");
+    throw InputError(name,
+                     "neither PNG, TIFF, BMP, PGM nor PBM; expected an image, or polygons in .geojson, "
+                     ".json or .txt");
 }
 
 Bitmap readWithItk(const std::string& name) {
@@ -159,8 +171,9 @@ Bitmap readWithItk(const std::string& name) {
     io->SetFileName(name);
     io->ReadImageInformation();
     if (io->GetNumberOfDimensions() > 2 && io->GetDimensions(2) > 1)
-        throw InputError(name, fmt::format("holds {} pages; a planar curve wants one. Save the page as an image",
-                                           io->GetDimensions(2)));
+        throw InputError(name,
+                         fmt::format("holds {} pages; a planar curve wants one. Save the page as an image",
+                                     io->GetDimensions(2)));
     Bitmap bitmap;
     const auto width = static_cast<std::int64_t>(io->GetDimensions(0)),
                height = static_cast<std::int64_t>(io->GetDimensions(1));
@@ -175,14 +188,30 @@ Bitmap readWithItk(const std::string& name) {
     io->Read(bytes.data());
     const unsigned components = io->GetNumberOfComponents();
     switch (io->GetComponentType()) {
-        case itk::ImageIOBase::UCHAR: convert<unsigned char>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::CHAR: convert<signed char>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::USHORT: convert<unsigned short>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::SHORT: convert<short>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::UINT: convert<unsigned>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::INT: convert<int>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::FLOAT: convert<float>(bytes, components, bitmap); break;
-        case itk::ImageIOBase::DOUBLE: convert<double>(bytes, components, bitmap); break;
+        case itk::ImageIOBase::UCHAR:
+            convert<unsigned char>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::CHAR:
+            convert<signed char>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::USHORT:
+            convert<unsigned short>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::SHORT:
+            convert<short>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::UINT:
+            convert<unsigned>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::INT:
+            convert<int>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::FLOAT:
+            convert<float>(bytes, components, bitmap);
+            break;
+        case itk::ImageIOBase::DOUBLE:
+            convert<double>(bytes, components, bitmap);
+            break;
         default:
             throw InputError(name, "pixels of type " + io->GetComponentTypeAsString(io->GetComponentType()) +
                                        "; 8 to 32 bit integers and floats are read");
@@ -190,17 +219,20 @@ Bitmap readWithItk(const std::string& name) {
     return bitmap;
 }
 
-// ---- iso line ------------------------------------------------------------------------------------------------
+// ---- iso line
+// ------------------------------------------------------------------------------------------------
 
-// Values relative to the iso value, positive outside. Outside the image there is the mirror image of the nearest
-// pixel's value where that is inside, so the line passes half a pixel beyond the border, and the value itself
-// where it is outside.
+// Values relative to the iso value, positive outside. Outside the image there is the mirror image of the
+// nearest pixel's value where that is inside, so the line passes half a pixel beyond the border, and the
+// value itself where it is outside.
 class Levels {
   public:
-    Levels(const Bitmap& bitmap, double iso, bool invert) : bitmap_(bitmap), iso_(iso), sign_(invert ? -1 : 1) {}
+    Levels(const Bitmap& bitmap, double iso, bool invert)
+        : bitmap_(bitmap), iso_(iso), sign_(invert ? -1 : 1) {}
     bool inside(std::int32_t x, std::int32_t y) const { return (bitmap_.at(x, y) > iso_) != (sign_ < 0); }
     double at(std::int32_t x, std::int32_t y) const {
-        const std::int32_t cx = std::clamp(x, 0, bitmap_.width - 1), cy = std::clamp(y, 0, bitmap_.height - 1);
+        const std::int32_t cx = std::clamp(x, 0, bitmap_.width - 1),
+                           cy = std::clamp(y, 0, bitmap_.height - 1);
         const double size = std::abs(static_cast<double>(bitmap_.at(cx, cy)) - iso_);
         const bool here = cx == x && cy == y && inside(x, y);
         return here ? -size : size;
@@ -260,7 +292,8 @@ Bitmap readBitmap(const std::filesystem::path& path) {
     if (stream.gcount() == 0) throw InputError(name, "is empty; expected an image or polygons");
     Bitmap bitmap;
     const bool blank = std::isspace(static_cast<unsigned char>(magic[2])) || magic[2] == '#';
-    if (magic[0] == 'P' && blank && (magic[1] == '1' || magic[1] == '2' || magic[1] == '4' || magic[1] == '5')) {
+    if (magic[0] == 'P' && blank &&
+        (magic[1] == '1' || magic[1] == '2' || magic[1] == '4' || magic[1] == '5')) {
         stream.clear();
         stream.seekg(0);
         bitmap = Pnm(name, {std::istreambuf_iterator<char>(stream), {}}).read(magic[1]);
@@ -295,17 +328,19 @@ Shape shapeOf(const Bitmap& bitmap, double iso, bool invert, const std::string& 
     }
     if (!any) {
         const ValueRange range = valueRange(bitmap);
-        throw InputError(name, fmt::format("no pixel is inside: values run from {} to {}, inside is {} {}; choose "
-                                           "another --iso{}",
-                                           range.low, range.high, invert ? "at most" : "above", iso,
-                                           invert ? "" : " or --invert"));
+        throw InputError(name,
+                         fmt::format("no pixel is inside: values run from {} to {}, inside is {} {}; choose "
+                                     "another --iso{}",
+                                     range.low, range.high, invert ? "at most" : "above", iso,
+                                     invert ? "" : " or --invert"));
     }
     for (std::int32_t y = -1; y < bitmap.height; ++y) {
         SpanCursor below(shape.inside.row(y)), above(shape.inside.row(y + 1));
         std::array<bool, 4> in{false, false, false, false};
         for (std::int32_t x = -1; x < bitmap.width; ++x) {
             in = {in[1], below.contains(x + 1), above.contains(x + 1), in[2]};
-            if (in[0] != in[1] || in[1] != in[2] || in[2] != in[3]) isoSegments(levels, x, y, in, shape.boundary);
+            if (in[0] != in[1] || in[1] != in[2] || in[2] != in[3])
+                isoSegments(levels, x, y, in, shape.boundary);
         }
     }
     return shape;

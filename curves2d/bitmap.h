@@ -14,7 +14,8 @@ struct Bitmap {
     std::vector<float> values;
 
     float at(std::int32_t x, std::int32_t y) const {
-        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
     }
 };
 
@@ -24,15 +25,15 @@ struct ValueRange {
 };
 ValueRange valueRange(const Bitmap& bitmap);
 
-// Grey values as stored. Colours as luminance (Rec. 601: 0.299 R + 0.587 G + 0.114 B), transparent pixels laid
-// on white. PBM: black 0, white 255.
-// Throws InputError: not an image, truncated, zero size, several pages, NaN.
+// Grey values as stored. Colours as luminance (Rec. 601: 0.299 R + 0.587 G + 0.114 B), transparent pixels
+// laid on white. PBM: black 0, white 255. Throws InputError: not an image, truncated, zero size, several
+// pages, NaN.
 Bitmap readBitmap(const std::filesystem::path& path);
 
 // Inside is where the value exceeds `iso` (with `invert`: where it does not). What touches the border of the
 // image is closed half a pixel outside it. boundary: the iso line of the bilinear interpolation, in chords.
-// name: for the message. Throws InputError when every pixel lies on one side (says the range) unless the image
-// is full, which is a rectangle.
+// name: for the message. Throws InputError when every pixel lies on one side (says the range) unless the
+// image is full, which is a rectangle.
 Shape shapeOf(const Bitmap& bitmap, double iso, bool invert, const std::string& name);
 
 }  // namespace isowave::curves2d

@@ -53,7 +53,8 @@ class Tracer {
     Curves run(const Progress& progress) {
         const std::vector<std::int32_t> rows = squareRows();
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (i % 256 == 0) progress("extracting", static_cast<double>(i) / static_cast<double>(rows.size()));
+            if (i % 256 == 0)
+                progress("extracting", static_cast<double>(i) / static_cast<double>(rows.size()));
             if (i == 0 || rows[i - 1] + 1 != rows[i]) below_.clear();
             squareRow(rows[i]);
         }
@@ -75,7 +76,8 @@ class Tracer {
         return rows;
     }
 
-    // Lattice points where the spline may differ from the sign of an unknown point, and one more at either end.
+    // Lattice points where the spline may differ from the sign of an unknown point, and one more at either
+    // end.
     Spans spansOf(std::int32_t y) const {
         Spans spans;
         for (std::int32_t r = y - 1; r <= y + 2; ++r)
@@ -147,8 +149,7 @@ class Tracer {
                     above.push_back({x, top});
                     rowCrossings_.push_back({y + 1, top});
                 }
-                if (s10 != s11)
-                    right = add({double(x + 1), y + rootOnEdge(block_.acrossRows(i + 1), s10)});
+                if (s10 != s11) right = add({double(x + 1), y + rootOnEdge(block_.acrossRows(i + 1), s10)});
                 connect({bottom, right, top, left}, {s00, s10, s11, s01}, i);
                 left = right;
             }
@@ -164,8 +165,9 @@ class Tracer {
 
     // edges: bottom, right, top, left; corners in the same turning sense, edge k from corner k to corner k+1.
     // A piece with inside at its left starts where the border of the square leaves the inside and ends where
-    // it comes back in. In a square with two pieces the spline's sign in the middle decides which pairs: inside
-    // joined through the middle, the pieces cut off the outside corners, that is, go on to the next edge.
+    // it comes back in. In a square with two pieces the spline's sign in the middle decides which pairs:
+    // inside joined through the middle, the pieces cut off the outside corners, that is, go on to the next
+    // edge.
     void connect(const std::array<Vertex, 4>& edges, const std::array<bool, 4>& corners, std::size_t i) {
         const bool two = corners[0] == corners[2] && corners[1] == corners[3] && corners[0] != corners[1];
         for (std::size_t k = 0; k < 4; ++k) {
@@ -195,9 +197,9 @@ class Tracer {
         }
     }
 
-    // The rings around a point form a chain. Passing a crossing of ring r either enters r, directly inside the
-    // innermost ring around the point so far, or leaves r, which then was the innermost: nothing that lies
-    // inside r reaches r's curve. So a stack does it.
+    // The rings around a point form a chain. Passing a crossing of ring r either enters r, directly inside
+    // the innermost ring around the point so far, or leaves r, which then was the innermost: nothing that
+    // lies inside r reaches r's curve. So a stack does it.
     void nest(Curves& curves) {
         std::vector<Vertex> open;
         for (std::size_t i = 0; i < rowCrossings_.size(); ++i) {
@@ -427,9 +429,9 @@ SmoothCurves smoothed(const RowField<Real>& field, const Curves& curves, double 
     return result;
 }
 
-#define ISOWAVE_INSTANTIATE(Real)                                                            \
-    template Curves extractCurves(const RowField<Real>&, const Progress&);                   \
-    template Curves refined(const RowField<Real>&, const Curves&, double);                   \
+#define ISOWAVE_INSTANTIATE(Real)                                          \
+    template Curves extractCurves(const RowField<Real>&, const Progress&); \
+    template Curves refined(const RowField<Real>&, const Curves&, double); \
     template SmoothCurves smoothed(const RowField<Real>&, const Curves&, double);
 ISOWAVE_INSTANTIATE(float)
 ISOWAVE_INSTANTIATE(double)

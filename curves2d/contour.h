@@ -20,8 +20,9 @@
 namespace isowave::curves2d {
 
 struct CurveRing {
-    Ring points;      // lattice coordinates
-    int parent = -1;  // the ring directly around it: of a hole its outer ring, of an island in a hole the hole
+    Ring points;  // lattice coordinates
+    int parent =
+        -1;  // the ring directly around it: of a hole its outer ring, of an island in a hole the hole
     bool hole = false;
 };
 

@@ -204,8 +204,8 @@ RowField<Real> synthesiseDirection(const RowField<Real>& coarse, const Step<Real
     return fine;
 }
 
-#define ISOWAVE_INSTANTIATE(Real)                                                                    \
-    template DirectionResult<Real> analyseDirection(const RowField<Real>&, const Progress&);         \
+#define ISOWAVE_INSTANTIATE(Real)                                                            \
+    template DirectionResult<Real> analyseDirection(const RowField<Real>&, const Progress&); \
     template RowField<Real> synthesiseDirection(const RowField<Real>&, const Step<Real>&, const Progress&);
 ISOWAVE_INSTANTIATE(float)
 ISOWAVE_INSTANTIATE(double)

@@ -57,8 +57,8 @@ Point sizeOf(const View& view) { return view.extent.high - view.extent.low; }
 
 std::string viewBox(const View& view) {
     const Point size = sizeOf(view);
-    return fmt::format("viewBox=\"{:.10g} {:.10g} {:.10g} {:.10g}\"", view.extent.low.x, view.extent.low.y, size.x,
-                       size.y);
+    return fmt::format("viewBox=\"{:.10g} {:.10g} {:.10g} {:.10g}\"", view.extent.low.x, view.extent.low.y,
+                       size.x, size.y);
 }
 
 // Width and height of a picture whose longer side is `longer`.
@@ -132,10 +132,11 @@ void writeGeojson(const std::filesystem::path& path, const Curves& curves, const
         if (curves.rings[r].hole)
             polygons[polygonOf[static_cast<std::size_t>(curves.rings[r].parent)]].push_back(r);
 
-    std::string out = fmt::format("{{\"type\":\"FeatureCollection\",\"features\":[{{\"type\":\"Feature\","
-                                  "\"properties\":{{\"name\":{}}},\"geometry\":"
-                                  "{{\"type\":\"MultiPolygon\",\"coordinates\":[",
-                                  quoted(name));
+    std::string out = fmt::format(
+        "{{\"type\":\"FeatureCollection\",\"features\":[{{\"type\":\"Feature\","
+        "\"properties\":{{\"name\":{}}},\"geometry\":"
+        "{{\"type\":\"MultiPolygon\",\"coordinates\":[",
+        quoted(name));
     for (std::size_t p = 0; p < polygons.size(); ++p) {
         out += p ? ",\n[" : "\n[";
         for (std::size_t k = 0; k < polygons[p].size(); ++k) {
@@ -176,7 +177,8 @@ void writePng(const std::filesystem::path& path, const Curves& curves, const Vie
     std::vector<std::int32_t> covered(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
     for (std::int32_t y = 0; y < height * kSamples; ++y)
         for (const Span& span : inside.row(y))
-            for (std::int32_t x = std::max(0, span.first); x <= std::min(span.last, width * kSamples - 1); ++x)
+            for (std::int32_t x = std::max(0, span.first); x <= std::min(span.last, width * kSamples - 1);
+                 ++x)
                 ++covered[static_cast<std::size_t>(y / kSamples) * static_cast<std::size_t>(width) +
                           static_cast<std::size_t>(x / kSamples)];
     std::vector<unsigned char> grey;
@@ -212,19 +214,20 @@ void writeSheet(const std::filesystem::path& path, const std::vector<Panel>& pan
     const std::size_t columns = std::min(panels.size(), kMostColumns),
                       rows = (panels.size() + kMostColumns - 1) / kMostColumns;
     const double cellWidth = size.x + kGap, cellHeight = size.y + kLabel + kGap;
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-                                  "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"14\">\n"
-                                  "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                                  static_cast<double>(columns) * cellWidth + kGap,
-                                  static_cast<double>(rows) * cellHeight + kGap);
+    std::string out = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+        "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"14\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+        static_cast<double>(columns) * cellWidth + kGap, static_cast<double>(rows) * cellHeight + kGap);
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double x = kGap + static_cast<double>(i % kMostColumns) * cellWidth,
                      y = kGap + static_cast<double>(i / kMostColumns) * cellHeight;
-        out += fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}>"
-                           "<path fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/></svg>\n"
-                           "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                           x, y, size.x, size.y, viewBox(view), kInk, pathOf(panels[i].curves, view), x + size.x / 2,
-                           y + size.y + 18, escaped(panels[i].label));
+        out += fmt::format(
+            "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}>"
+            "<path fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/></svg>\n"
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+            x, y, size.x, size.y, viewBox(view), kInk, pathOf(panels[i].curves, view), x + size.x / 2,
+            y + size.y + 18, escaped(panels[i].label));
     }
     write(path, out + "</svg>\n");
 }

@@ -1,5 +1,6 @@
-// Curves -> files: SVG, GeoJSON, text, PNG, and a sheet with all levels side by side. Every file appears whole
-// or not at all. Coordinates are the input's, with 12 digits (SVG: 10), so that rings which are simple stay so.
+// Curves -> files: SVG, GeoJSON, text, PNG, and a sheet with all levels side by side. Every file appears
+// whole or not at all. Coordinates are the input's, with 12 digits (SVG: 10), so that rings which are simple
+// stay so.
 #pragma once
 
 #include <filesystem>

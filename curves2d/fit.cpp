@@ -108,8 +108,8 @@ Region nodesNear(const std::vector<Segment>& segments, double band) {
         low = std::min({low, s.a.y, s.b.y});
         high = std::max({high, s.a.y, s.b.y});
     }
-    Region corners =
-        withRows(static_cast<std::int32_t>(std::floor(low - band)), static_cast<std::int32_t>(std::ceil(high + band)));
+    Region corners = withRows(static_cast<std::int32_t>(std::floor(low - band)),
+                              static_cast<std::int32_t>(std::ceil(high + band)));
     for (const Segment& s : segments)
         forEachCapsuleRow(s, band, [&](std::int32_t row, const RowPart& part) {
             const Span span{static_cast<std::int32_t>(std::ceil(part.low)),
@@ -123,8 +123,8 @@ Region nodesNear(const std::vector<Segment>& segments, double band) {
 
 // What of the boundary separates an inside lattice point from an outside one: pieces in stabbed nodes and in
 // their neighbours. The rest are both sides of a slit, spikes, overlaps and islands that lie between the
-// lattice points. At all of them the distance is 0 but the sign does not change, and the coarser levels of such
-// a field put specks there (seen: holes 500 pixels from the nearest coast, along a seam of the data).
+// lattice points. At all of them the distance is 0 but the sign does not change, and the coarser levels of
+// such a field put specks there (seen: holes 500 pixels from the nearest coast, along a seam of the data).
 std::vector<Segment> separating(const std::vector<Segment>& boundary, const Region& stabbed) {
     const Region near = dilatedRegion(stabbed, 1, 1);
     std::vector<Segment> out;
@@ -203,7 +203,9 @@ class ThreeRows {
   public:
     template <class Field>
     ThreeRows(const Field& field, std::int32_t y)
-        : below_(field.find(y - 1), field.K), here_(field.find(y), field.K), above_(field.find(y + 1), field.K) {}
+        : below_(field.find(y - 1), field.K),
+          here_(field.find(y), field.K),
+          above_(field.find(y + 1), field.K) {}
     // Positions first-1 .. last+1.
     void read(std::int32_t first, std::int32_t last) {
         for (auto* row : {&below, &here, &above}) row->resize(static_cast<std::size_t>(last - first + 3));
@@ -248,17 +250,19 @@ void updateRows(RowField<Real>& field, const std::vector<std::int32_t>& numbers,
 
 // c <- (c + mean of the four neighbours)/2, all at once.
 template <class Real>
-void laplacianPass(RowField<Real>& field, const std::vector<std::int32_t>& numbers, const Progress& progress) {
-    updateRows(field, numbers, progress, [&](std::int32_t y, const Row<Real>& row, std::vector<Real>& values) {
-        ThreeRows<Real> c(field, y);
-        std::size_t v = 0;
-        for (const KnownRun& run : row.runs) {
-            c.read(run.first, run.last);
-            for (std::size_t i = 1; i + 1 < c.here.size(); ++i)
-                values[v++] = static_cast<Real>(
-                    0.5 * (c.here[i] + (c.here[i - 1] + c.here[i + 1] + c.below[i] + c.above[i]) / 4));
-        }
-    });
+void laplacianPass(RowField<Real>& field, const std::vector<std::int32_t>& numbers,
+                   const Progress& progress) {
+    updateRows(
+        field, numbers, progress, [&](std::int32_t y, const Row<Real>& row, std::vector<Real>& values) {
+            ThreeRows<Real> c(field, y);
+            std::size_t v = 0;
+            for (const KnownRun& run : row.runs) {
+                c.read(run.first, run.last);
+                for (std::size_t i = 1; i + 1 < c.here.size(); ++i)
+                    values[v++] = static_cast<Real>(
+                        0.5 * (c.here[i] + (c.here[i - 1] + c.here[i + 1] + c.below[i] + c.above[i]) / 4));
+            }
+        });
 }
 
 // ---- repair -----------------------------------------------------------------------------------------------
@@ -292,19 +296,19 @@ void repair(RowField<Real>& field, const Region& inside, double floor, double ta
         std::atomic<std::int64_t> count{0};
         std::vector<std::int32_t> numbers = std::move(active);
         std::vector<char> changed(numbers.size(), 0);
-        updateRows(field, numbers, progress,
-                   [&](std::int32_t y, const Row<Real>&, std::vector<Real>& values) {
-                       std::int64_t here = 0;
-                       forEachLatticeValue(field, inside, y, [&](std::int32_t, double s, double F, std::size_t v) {
-                           if (s * F >= floor) return;
-                           values[v] = static_cast<Real>(static_cast<double>(values[v]) + target * s - F);
-                           ++here;
-                       });
-                       if (!here) return;
-                       changed[static_cast<std::size_t>(
-                           std::lower_bound(numbers.begin(), numbers.end(), y) - numbers.begin())] = 1;
-                       count += here;
-                   });
+        updateRows(
+            field, numbers, progress, [&](std::int32_t y, const Row<Real>&, std::vector<Real>& values) {
+                std::int64_t here = 0;
+                forEachLatticeValue(field, inside, y, [&](std::int32_t, double s, double F, std::size_t v) {
+                    if (s * F >= floor) return;
+                    values[v] = static_cast<Real>(static_cast<double>(values[v]) + target * s - F);
+                    ++here;
+                });
+                if (!here) return;
+                changed[static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), y) -
+                                                 numbers.begin())] = 1;
+                count += here;
+            });
         if (count == 0) return;
         report.repaired += count;
         ++report.repairPasses;
@@ -329,8 +333,8 @@ void countDisagreement(const RowField<Real>& field, const Region& inside, FitRep
 // The sign is what E section 2 asks for; the margin keeps it when the field is next filtered or stored.
 constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
 
-// A distance fit is right to a hundredth of a step where it disagrees at all, so it is moved as little as will
-// do. Both in lattice steps.
+// A distance fit is right to a hundredth of a step where it disagrees at all, so it is moved as little as
+// will do. Both in lattice steps.
 constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
 
 template <class Real>
@@ -347,7 +351,8 @@ void finish(RowField<Real>& field, const Shape& shape, double floor, double targ
 // ---- distances --------------------------------------------------------------------------------------------
 
 // Signed distance to the boundary on the lattice points `where`, clamped to ±w and scaled so that ±w is ±K.
-RowField<float> distances(const Region& where, const Shape& shape, double w, double K, const Progress& progress) {
+RowField<float> distances(const Region& where, const Shape& shape, double w, double K,
+                          const Progress& progress) {
     RowField<float> d = makeField<float>(where, shape, w * w);
     for (auto row = d.rows.begin(); row != d.rows.end(); ++row)
         for (float& v : row.value().values) v = std::abs(v);
@@ -388,7 +393,8 @@ RowField<float> distances(const Region& where, const Shape& shape, double w, dou
         std::size_t v = 0;
         for (const KnownRun& run : row.runs)
             for (std::int32_t x = run.first; x <= run.last; ++x, ++v)
-                row.values[v] = static_cast<float>((inside.contains(x) ? -K : K) * std::sqrt(row.values[v]) / w);
+                row.values[v] =
+                    static_cast<float>((inside.contains(x) ? -K : K) * std::sqrt(row.values[v]) / w);
     }
     d.K = K;
     return d;

@@ -39,8 +39,8 @@ struct DistanceFitOptions {
 // filter on I, then the repair: while a lattice point has s F < 0.05 K, its control point changes by
 // 0.1 K s - F. An empty shape gives an empty field.
 template <class Real>
-RowField<Real> fitBinary(const Shape& shape, const BinaryFitOptions& options = {}, FitReport* report = nullptr,
-                         const Progress& progress = {});
+RowField<Real> fitBinary(const Shape& shape, const BinaryFitOptions& options = {},
+                         FitReport* report = nullptr, const Progress& progress = {});
 
 // Signed distance to shape.boundary, sign from shape.inside, then quasi-interpolation
 // c = (8 v_i - v_{i-1} - v_{i+1})/6 on each axis and the repair.

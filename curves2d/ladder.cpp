@@ -19,9 +19,10 @@ Input readImageInput(const std::filesystem::path& path, const InputOptions& opti
     const double middle = 0.5 * (static_cast<double>(range.low) + static_cast<double>(range.high));
     double iso = options.iso.value_or(middle);
     if (range.low == range.high && !options.iso)
-        throw InputError(path.string(), fmt::format("every pixel is {}: there is no crossing to draw; --iso makes "
-                                                    "all of it inside or outside",
-                                                    range.low));
+        throw InputError(path.string(),
+                         fmt::format("every pixel is {}: there is no crossing to draw; --iso makes "
+                                     "all of it inside or outside",
+                                     range.low));
     if (!options.iso && !range.twoValues)
         input.remarks.push_back(
             fmt::format("--iso {}: the middle of the values {} .. {}", middle, range.low, range.high));
@@ -33,7 +34,8 @@ Input readImageInput(const std::filesystem::path& path, const InputOptions& opti
     return input;
 }
 
-Input readPolygonInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
+Input readPolygonInput(const std::filesystem::path& path, const InputOptions& options,
+                       const Progress& progress) {
     Input input;
     const PolygonInput polygons = readPolygons(path);
     for (const Polygon& polygon : polygons.polygons)
@@ -46,13 +48,14 @@ Input readPolygonInput(const std::filesystem::path& path, const InputOptions& op
         throw InputError(path.string(), error.what());
     }
     if (input.shape.inside.empty())
-        throw InputError(path.string(),
-                         fmt::format("no pixel's middle lies in a polygon at --pixels {}; take more", options.pixels));
+        throw InputError(
+            path.string(),
+            fmt::format("no pixel's middle lies in a polygon at --pixels {}; take more", options.pixels));
     input.shape.boundary = boundary(polygons.polygons, input.shape.frame);
     input.yUp = true;
     input.pixel = input.shape.frame.spacing.x;
-    input.kind = fmt::format("{} polygons of {} rings, {} points", polygons.polygons.size(), polygons.ringCount(),
-                             polygons.pointCount());
+    input.kind = fmt::format("{} polygons of {} rings, {} points", polygons.polygons.size(),
+                             polygons.ringCount(), polygons.pointCount());
     input.remarks = polygons.remarks;
     return input;
 }
@@ -64,7 +67,8 @@ constexpr int kMostSamples = 64;
 Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
     progress("reading", 0);
     if (!std::filesystem::exists(path)) throw InputError(path.string(), "there is no such file");
-    return looksLikePolygons(path) ? readPolygonInput(path, options, progress) : readImageInput(path, options);
+    return looksLikePolygons(path) ? readPolygonInput(path, options, progress)
+                                   : readImageInput(path, options);
 }
 
 RowField<float> fit(const Shape& shape, Fit method, const DistanceFitOptions& options, FitReport* report,
@@ -78,7 +82,8 @@ std::vector<Segment> segmentsOf(const Curves& curves) {
     segments.reserve(curves.pointCount());
     for (std::size_t r = 0; r < curves.rings.size(); ++r) {
         const Ring ring = curves.world(r);
-        for (std::size_t i = 0; i < ring.size(); ++i) segments.push_back({ring[i], ring[(i + 1) % ring.size()]});
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            segments.push_back({ring[i], ring[(i + 1) % ring.size()]});
     }
     return segments;
 }
@@ -129,7 +134,8 @@ Ladder climb(RowField<float> field, std::optional<int> lastStep, const LadderVis
         ladder.steps.push_back(facts);
         if (visit) visit(facts, f, curves);
     };
-    const Pyramid<float> pyramid = analyse<float>(std::move(field), lastStep.value_or(1000), progress, onStep);
+    const Pyramid<float> pyramid =
+        analyse<float>(std::move(field), lastStep.value_or(1000), progress, onStep);
     ladder.coefficients = pyramid.coefficientCount();
     ladder.controlPoints = ladder.steps.front().controlPoints;
     return ladder;

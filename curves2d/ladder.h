@@ -20,23 +20,24 @@ enum class Fit { binary, distance };
 
 struct InputOptions {
     std::optional<double> iso = std::nullopt;  // images; without it the middle of the range of values
-    bool invert = false;         // images
-    std::int32_t pixels = 1024;  // polygons: along the longer side
+    bool invert = false;                       // images
+    std::int32_t pixels = 1024;                // polygons: along the longer side
 };
 
 // An input, ready to be fitted.
 struct Input {
     Shape shape;
-    Box extent;         // the input's coordinates: of the image with half a pixel around, or of the polygons
-    bool yUp = false;   // polygons; an image's y points down
-    Fit fit = Fit::distance;            // what suits it: binary for masks, whose distances would be staircases
-    std::string kind;                   // "image 400 x 328", "12 polygons of 14 rings, 2,113 points"
-    std::vector<std::string> remarks;   // defaults taken, rings repaired
-    double pixel = 1;                   // of level 0, in the input's unit
+    Box extent;        // the input's coordinates: of the image with half a pixel around, or of the polygons
+    bool yUp = false;  // polygons; an image's y points down
+    Fit fit = Fit::distance;           // what suits it: binary for masks, whose distances would be staircases
+    std::string kind;                  // "image 400 x 328", "12 polygons of 14 rings, 2,113 points"
+    std::vector<std::string> remarks;  // defaults taken, rings repaired
+    double pixel = 1;                  // of level 0, in the input's unit
 };
 
 // Reads an image or polygons. Throws InputError: bitmap.h, polygon_input.h, raster.h.
-Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress = {});
+Input readInput(const std::filesystem::path& path, const InputOptions& options,
+                const Progress& progress = {});
 
 struct StepFacts {
     int step = 0;
@@ -46,7 +47,7 @@ struct StepFacts {
     std::size_t rings = 0;                 // outer ones
     std::size_t holes = 0;
     std::size_t points = 0;
-    double area = 0;        // the input's unit squared
+    double area = 0;         // the input's unit squared
     double maxToLevel0 = 0;  // from points on this step's curves to the curves of step 0; the input's unit
     double rmsToLevel0 = 0;  // weighted by length. Both one-sided: an island that has gone costs nothing
 };

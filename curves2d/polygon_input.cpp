@@ -33,9 +33,10 @@ class Collector {
     void ring(Ring ring, const std::string& place, bool mustBeClosed) {
         for (std::size_t i = 0; i < ring.size(); ++i)
             if (!(std::abs(ring[i].x) <= kLargest && std::abs(ring[i].y) <= kLargest))
-                throw InputError(name_, fmt::format("{}: point {} is ({}, {}); coordinates up to 1e9 are read. "
-                                                    "Scale or mend the file",
-                                                    place, i, ring[i].x, ring[i].y));
+                throw InputError(name_,
+                                 fmt::format("{}: point {} is ({}, {}); coordinates up to 1e9 are read. "
+                                             "Scale or mend the file",
+                                             place, i, ring[i].x, ring[i].y));
         const bool closed = ring.size() > 1 && ring.front() == ring.back();
         ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
         if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
@@ -53,9 +54,10 @@ class Collector {
 
     PolygonInput finish() {
         if (result_.polygons.empty())
-            throw InputError(name_, tooShort_.number || others_.number
-                                        ? "no polygon of three points or more in it"
-                                        : "no polygon in it; expected Polygon or MultiPolygon, or lines 'x y'");
+            throw InputError(name_,
+                             tooShort_.number || others_.number
+                                 ? "no polygon of three points or more in it"
+                                 : "no polygon in it; expected Polygon or MultiPolygon, or lines 'x y'");
         say(unclosed_, "not closed, closed");
         say(tooShort_, "with fewer than three different points, left out");
         say(crossing_, "meeting themselves; inside is what an odd number of turns surrounds");
@@ -76,9 +78,8 @@ class Collector {
     }
     void say(const Count& count, const char* what) {
         if (count.number)
-            result_.remarks.push_back(
-                fmt::format("{} {} {} (first: {})", count.number, count.number == 1 ? "ring" : "rings", what,
-                            count.first));
+            result_.remarks.push_back(fmt::format("{} {} {} (first: {})", count.number,
+                                                  count.number == 1 ? "ring" : "rings", what, count.first));
     }
 
     std::string name_;
@@ -87,7 +88,8 @@ class Collector {
     Count unclosed_, tooShort_, crossing_, others_;
 };
 
-// ---- JSON -----------------------------------------------------------------------------------------------------
+// ---- JSON
+// -----------------------------------------------------------------------------------------------------
 
 class JsonReader {
   public:
@@ -151,8 +153,8 @@ class JsonReader {
         ring.reserve(list.size());
         for (const Json& p : list) {
             if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
-                throw InputError(out_.name(), fmt::format("{}: point {} is {}; expected [x, y]", place, ring.size(),
-                                                          p.dump().substr(0, 40)));
+                throw InputError(out_.name(), fmt::format("{}: point {} is {}; expected [x, y]", place,
+                                                          ring.size(), p.dump().substr(0, 40)));
             ring.push_back({p[0], p[1]});
         }
         return ring;
@@ -164,7 +166,8 @@ class JsonReader {
         const bool quantised = root_.contains("transform");
         if (quantised) {
             const Json& transform = root_["transform"];
-            const Ring two = points(Json::array({list(transform, "scale"), list(transform, "translate")}), "transform");
+            const Ring two =
+                points(Json::array({list(transform, "scale"), list(transform, "translate")}), "transform");
             scale = two[0];
             shift = two[1];
         }
@@ -205,7 +208,8 @@ class JsonReader {
     std::size_t polygon_ = 0;
 };
 
-// ---- text -----------------------------------------------------------------------------------------------------
+// ---- text
+// -----------------------------------------------------------------------------------------------------
 
 bool parsePoint(const std::string& line, Point& point) {
     const char* at = line.data();
@@ -240,9 +244,10 @@ void readText(const std::string& text, Collector& out) {
         } else if (line[first] != '#') {
             Point p;
             if (!parsePoint(line, p))
-                throw InputError(out.name(), fmt::format("line {}: '{}'; expected two numbers 'x y', '>' or an "
-                                                         "image",
-                                                         lineNumber, line.substr(0, 40)));
+                throw InputError(out.name(),
+                                 fmt::format("line {}: '{}'; expected two numbers 'x y', '>' or an "
+                                             "image",
+                                             lineNumber, line.substr(0, 40)));
             ring.push_back(p);
         }
     }
@@ -261,7 +266,8 @@ bool onSegment(Point p, const Segment& s) {
 }
 
 bool segmentsMeet(const Segment& s, const Segment& t) {
-    const int a = turn(s.a, s.b, t.a), b = turn(s.a, s.b, t.b), c = turn(t.a, t.b, s.a), d = turn(t.a, t.b, s.b);
+    const int a = turn(s.a, s.b, t.a), b = turn(s.a, s.b, t.b), c = turn(t.a, t.b, s.a),
+              d = turn(t.a, t.b, s.b);
     if (a * b < 0 && c * d < 0) return true;
     return onSegment(t.a, s) || onSegment(t.b, s) || onSegment(s.a, t) || onSegment(s.b, t);
 }
@@ -286,7 +292,8 @@ bool selfIntersection(const Ring& ring, Point& place) {
                 // Neighbours share a point; they meet elsewhere only when one folds back over the other.
                 const Segment& first = next ? segments[i] : segments[j];
                 const Segment& second = next ? segments[j] : segments[i];
-                found = turn(first.a, first.b, second.b) == 0 && dot(first.b - first.a, second.b - second.a) < 0;
+                found =
+                    turn(first.a, first.b, second.b) == 0 && dot(first.b - first.a, second.b - second.a) < 0;
             } else {
                 found = segmentsMeet(segments[i], segments[j]);
             }

@@ -55,8 +55,8 @@ Pyramid<Real> analyse(RowField<Real> field, int mostSteps, const Progress& progr
 
 std::string stepName(int step) { return std::to_string(step / 2 + 1) + (step % 2 ? "a" : ""); }
 
-#define ISOWAVE_INSTANTIATE(Real)                                                                      \
-    template struct Pyramid<Real>;                                                                     \
+#define ISOWAVE_INSTANTIATE(Real)  \
+    template struct Pyramid<Real>; \
     template Pyramid<Real> analyse(RowField<Real>, int, const Progress&, const StepVisitor<Real>&);
 ISOWAVE_INSTANTIATE(float)
 ISOWAVE_INSTANTIATE(double)

@@ -76,7 +76,8 @@ Region rasterise(const std::vector<Polygon>& polygons, const Frame& frame, const
     std::vector<Crossing> crossings;
     std::vector<Exact> points;
     for (std::size_t n = 0; n < polygons.size(); ++n) {
-        if (n % 64 == 0) progress("rasterising", static_cast<double>(n) / static_cast<double>(polygons.size()));
+        if (n % 64 == 0)
+            progress("rasterising", static_cast<double>(n) / static_cast<double>(polygons.size()));
         crossings.clear();
         for (const Ring& ring : polygons[n].rings) {
             points.clear();
@@ -88,8 +89,7 @@ Region rasterise(const std::vector<Polygon>& polygons, const Frame& frame, const
         // Every ring crosses a row an even number of times.
         for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
             if (crossings[i].position < crossings[i + 1].position)
-                inside.push_back(
-                    {crossings[i].row, {crossings[i].position, crossings[i + 1].position - 1}});
+                inside.push_back({crossings[i].row, {crossings[i].position, crossings[i + 1].position - 1}});
     }
     Region region;
     if (inside.empty()) return region;
@@ -118,13 +118,13 @@ std::vector<Segment> boundary(const std::vector<Polygon>& polygons, const Frame&
                     edges.push_back(
                         {std::min(ea, eb), std::max(ea, eb), {frame.toLattice(a), frame.toLattice(b)}});
             }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::tie(a.low, a.high) < std::tie(b.low, b.high);
-    });
+    std::sort(edges.begin(), edges.end(),
+              [](const Edge& a, const Edge& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
     std::vector<Segment> out;
     for (std::size_t i = 0; i < edges.size();) {
         std::size_t end = i + 1;
-        while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+        while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
+            ++end;
         if ((end - i) % 2 == 1) out.push_back(edges[i].segment);
         i = end;
     }

@@ -16,11 +16,10 @@ Frame frameAround(const std::vector<Polygon>& polygons, std::int32_t pixels);
 // direction and order of the rings do not matter and a ring that crosses itself has an answer too.
 //
 // Exact: coordinates are rounded to 2^-20 of a lattice step and everything after that is done in integers. A
-// lattice point on an edge belongs to exactly one of the two sides (a point is inside from the crossing at its
-// left, included, to the crossing at its right, not included), so polygons that share an edge leave no slit
-// and do not overlap.
-// Memory: proportional to the boundary, whatever the size of the lattice.
-// Throws InputError for coordinates beyond 2^28 lattice steps.
+// lattice point on an edge belongs to exactly one of the two sides (a point is inside from the crossing at
+// its left, included, to the crossing at its right, not included), so polygons that share an edge leave no
+// slit and do not overlap. Memory: proportional to the boundary, whatever the size of the lattice. Throws
+// InputError for coordinates beyond 2^28 lattice steps.
 Region rasterise(const std::vector<Polygon>& polygons, const Frame& frame, const Progress& progress = {});
 
 // The edges of all rings in lattice coordinates. Edges that occur twice, in two polygons or in one, are

@@ -37,7 +37,8 @@ Bounds RowField<Real>::bounds() const {
     bool first = true;
     for (const auto& [number, row] : rows) {
         if (row.runs.empty()) continue;
-        const std::int32_t low[2] = {row.runs.front().first, number}, high[2] = {row.runs.back().last, number};
+        const std::int32_t low[2] = {row.runs.front().first, number},
+                           high[2] = {row.runs.back().last, number};
         for (int a = 0; a < 2; ++a) {
             const int to = a == 0 ? axis : 1 - axis;
             box.first[to] = first ? low[a] : std::min(box.first[to], low[a]);
@@ -186,11 +187,11 @@ Sample sample(const RowField<Real>& field, Point lattice) {
     return {value, field.axis == 0 ? Point{along, across} : Point{across, along}};
 }
 
-#define ISOWAVE_INSTANTIATE(Real)                                                      \
-    template struct RowField<Real>;                                                    \
-    template class RowReader<Real>;                                                    \
-    template RowField<Real> transposed(const RowField<Real>&);                         \
-    template std::int64_t definedNodeCount(const RowField<Real>&);                     \
+#define ISOWAVE_INSTANTIATE(Real)                                  \
+    template struct RowField<Real>;                                \
+    template class RowReader<Real>;                                \
+    template RowField<Real> transposed(const RowField<Real>&);     \
+    template std::int64_t definedNodeCount(const RowField<Real>&); \
     template Sample sample(const RowField<Real>&, Point);
 ISOWAVE_INSTANTIATE(float)
 ISOWAVE_INSTANTIATE(double)

@@ -20,7 +20,8 @@ bool Box::meets(const Box& other) const {
 }
 
 double Box::squaredDistance(Point p) const {
-    const double dx = std::max({low.x - p.x, 0.0, p.x - high.x}), dy = std::max({low.y - p.y, 0.0, p.y - high.y});
+    const double dx = std::max({low.x - p.x, 0.0, p.x - high.x}),
+                 dy = std::max({low.y - p.y, 0.0, p.y - high.y});
     return dx * dx + dy * dy;
 }
 
@@ -77,8 +78,7 @@ void SegmentTree::nearest(std::uint32_t at, Point p, double& best) const {
             best = std::min(best, squaredDistance(p, segments_[order_[i]]));
         return;
     }
-    const bool leftFirst =
-        nodes_[at + 1].box.squaredDistance(p) <= nodes_[node.right].box.squaredDistance(p);
+    const bool leftFirst = nodes_[at + 1].box.squaredDistance(p) <= nodes_[node.right].box.squaredDistance(p);
     nearest(leftFirst ? at + 1 : node.right, p, best);
     nearest(leftFirst ? node.right : at + 1, p, best);
 }

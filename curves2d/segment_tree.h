@@ -38,8 +38,8 @@ class SegmentTree {
     static constexpr std::size_t kLeafSize = 4;
     struct Node {
         Box box;
-        std::uint32_t begin, end;          // of order_
-        std::uint32_t right = 0;           // the second child; the first one follows the node; 0: a leaf
+        std::uint32_t begin, end;  // of order_
+        std::uint32_t right = 0;   // the second child; the first one follows the node; 0: a leaf
     };
 
     std::uint32_t build(std::uint32_t begin, std::uint32_t end);

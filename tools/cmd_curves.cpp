@@ -1,5 +1,5 @@
-// isowave curves INPUT -o FOLDER: bitmap or polygons -> fit -> every step's curves as it passes by; one file a
-// level, put into the folder at once at the end, and on request a table, a sheet and a report.
+// isowave curves INPUT -o FOLDER: bitmap or polygons -> fit -> every step's curves as it passes by; one file
+// a level, put into the folder at once at the end, and on request a table, a sheet and a report.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -22,10 +22,14 @@ constexpr double kSheetTolerance = 1e-3;  // of the picture's longer side
 
 std::string extensionOf(CurveFormat format) {
     switch (format) {
-        case CurveFormat::svg: return ".svg";
-        case CurveFormat::geojson: return ".geojson";
-        case CurveFormat::png: return ".png";
-        case CurveFormat::txt: return ".txt";
+        case CurveFormat::svg:
+            return ".svg";
+        case CurveFormat::geojson:
+            return ".geojson";
+        case CurveFormat::png:
+            return ".png";
+        case CurveFormat::txt:
+            return ".txt";
     }
     return "";
 }
@@ -58,8 +62,8 @@ curves2d::RowField<float> fitted(const Settings& settings, const curves2d::Input
     curves2d::FitReport report;
     auto field = curves2d::fit(input.shape, fitMethod(settings, input), options, &report, console.progress());
     if (report.disagreeing)
-        console.say(fmt::format("{} of {} lattice points have another sign than the input", report.disagreeing,
-                                report.latticePoints));
+        console.say(fmt::format("{} of {} lattice points have another sign than the input",
+                                report.disagreeing, report.latticePoints));
     return field;
 }
 
@@ -75,7 +79,8 @@ class Scribe {
         const bool whole = facts.step % kStepsPerPlaneLevel == 0;
         std::optional<std::string> file;
         if (whole && !curves.rings.empty()) {
-            file = fmt::format("{}_L{}{}", out_.name(), facts.step / kStepsPerPlaneLevel, extensionOf(format()));
+            file =
+                fmt::format("{}_L{}{}", out_.name(), facts.step / kStepsPerPlaneLevel, extensionOf(format()));
             write(*file, facts, field, curves);
         }
         if (settings_.sheet && whole && !curves.rings.empty()) {
@@ -120,12 +125,19 @@ class Scribe {
         const curves2d::Curves curves =
             settings_.tolerance ? curves2d::refined(field, all, *settings_.tolerance * input_.pixel) : all;
         switch (format()) {
-            case CurveFormat::svg: curves2d::writeSvg(place, curves, view_); break;
-            case CurveFormat::geojson:
-                curves2d::writeGeojson(place, curves, fmt::format("{} {}", out_.name(), curves2d::stepName(facts.step)));
+            case CurveFormat::svg:
+                curves2d::writeSvg(place, curves, view_);
                 break;
-            case CurveFormat::png: curves2d::writePng(place, curves, view_); break;
-            case CurveFormat::txt: curves2d::writeText(place, curves); break;
+            case CurveFormat::geojson:
+                curves2d::writeGeojson(place, curves,
+                                       fmt::format("{} {}", out_.name(), curves2d::stepName(facts.step)));
+                break;
+            case CurveFormat::png:
+                curves2d::writePng(place, curves, view_);
+                break;
+            case CurveFormat::txt:
+                curves2d::writeText(place, curves);
+                break;
         }
     }
 
@@ -139,7 +151,8 @@ class Scribe {
     void putJson(const curves2d::StepFacts& f, const std::optional<std::string>& file) {
         Json json;
         json["step"] = f.step;
-        json["level"] = f.step % kStepsPerPlaneLevel == 0 ? Json(f.step / kStepsPerPlaneLevel) : Json(nullptr);
+        json["level"] =
+            f.step % kStepsPerPlaneLevel == 0 ? Json(f.step / kStepsPerPlaneLevel) : Json(nullptr);
         json["file"] = file ? Json(*file) : Json(nullptr);
         json["domain"] = f.domain;
         json["control_points"] = f.controlPoints;
@@ -185,9 +198,11 @@ int runCurves(const Settings& settings, Console& console) {
     OutputFolder out(*settings.output);
     std::optional<tbb::global_control> limit;
     if (settings.threads)
-        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(settings.threads));
+        limit.emplace(tbb::global_control::max_allowed_parallelism,
+                      static_cast<std::size_t>(settings.threads));
 
-    curves2d::Input input = curves2d::readInput(settings.files[0], inputOptions(settings), console.progress());
+    curves2d::Input input =
+        curves2d::readInput(settings.files[0], inputOptions(settings), console.progress());
     for (const std::string& remark : input.remarks) console.say(remark);
     curves2d::RowField<float> field = fitted(settings, input, console);
     input.shape = {};  // as large as the field
@@ -217,13 +232,13 @@ int runCurves(const Settings& settings, Console& console) {
         console.say(fmt::format("the smooth curves stay within {} pixels of the zero set",
                                 shortNumber(scribe.smoothDeviation())));
     if (settings.jsonFile != "-")
-        console.print(fmt::format("{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n",
-                                  out.folder().string(), input.kind, grouped(ladder.controlPoints),
-                                  grouped(ladder.coefficients),
-                                  100.0 * (static_cast<double>(ladder.coefficients) /
-                                               static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints)) -
-                                           1),
-                                  scribe.filesWritten()));
+        console.print(fmt::format(
+            "{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n", out.folder().string(),
+            input.kind, grouped(ladder.controlPoints), grouped(ladder.coefficients),
+            100.0 * (static_cast<double>(ladder.coefficients) /
+                         static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints)) -
+                     1),
+            scribe.filesWritten()));
     return 0;
 }
 

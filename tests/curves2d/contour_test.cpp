@@ -19,12 +19,13 @@ using validity::complaint;
 TEST(Contour, RingsAreSimpleDisjointAndNestedAtEveryStepOfTheWholeZoo) {
     std::size_t rings = 0, holes = 0;
     for (const auto& [name, shape] : shapes::all())
-        analyse<float>(fitBinary<float>(shape), 1000, {}, [&, n = &name](int step, const RowField<float>& field) {
-            const Curves curves = extractCurves(field);
-            EXPECT_EQ(complaint(curves.rings), "") << *n << " step " << step;
-            rings += curves.rings.size();
-            holes += curves.holeCount();
-        });
+        analyse<float>(fitBinary<float>(shape), 1000, {},
+                       [&, n = &name](int step, const RowField<float>& field) {
+                           const Curves curves = extractCurves(field);
+                           EXPECT_EQ(complaint(curves.rings), "") << *n << " step " << step;
+                           rings += curves.rings.size();
+                           holes += curves.holeCount();
+                       });
     EXPECT_GT(rings, 2000u);  // seen 2338
     EXPECT_GT(holes, 300u);
 }
@@ -102,14 +103,16 @@ TEST(Contour, BothOrdersOfRowsGiveTheSameCurves) {
 TEST(Contour, AreaOfADiscIsKeptByTheLevelsUntilItsRadiusIsFiveSteps) {
     const double radius = 40.3, area = 3.14159265358979 * radius * radius;
     const Pyramid<float> pyramid = analyse(fitBinary<float>(shapes::disc(radius)));
-    const double bounds[] = {0.002, 0.002, 0.005, 0.015};  // seen 6e-4 .. 3e-3, and 0.0103: chords of a circle
+    const double bounds[] = {0.002, 0.002, 0.005,
+                             0.015};  // seen 6e-4 .. 3e-3, and 0.0103: chords of a circle
     for (int level = 0; level <= 3; ++level)
         EXPECT_NEAR(extractCurves(pyramid.field(2 * level)).area() / area, 1, bounds[level]) << level;
 }
 
 // A circle as polygon, fine enough to stand for the circle itself.
 Shape exactCircle(double radius, Point centre) {
-    Shape shape = shapes::bitmap(80, 80, [&](int x, int y) { return std::hypot(x - centre.x, y - centre.y) < radius; });
+    Shape shape =
+        shapes::bitmap(80, 80, [&](int x, int y) { return std::hypot(x - centre.x, y - centre.y) < radius; });
     const int n = 2000;
     const auto at = [&](int i) {
         const double a = 2 * 3.141592653589793 * i / n;
@@ -121,7 +124,8 @@ Shape exactCircle(double radius, Point centre) {
 
 TEST(Contour, DistanceFitPutsTheCurveWhereTheBoundaryIs) {
     // Radius and what was seen: the error falls with the curvature.
-    for (const auto& [radius, bound] : std::vector<std::pair<double, double>>{{8, 4e-3}, {16, 1e-3}, {32, 3e-4}}) {
+    for (const auto& [radius, bound] :
+         std::vector<std::pair<double, double>>{{8, 4e-3}, {16, 1e-3}, {32, 3e-4}}) {
         const Point centre{39.3, 39.8};
         const RowField<float> field = fitDistance<float>(exactCircle(radius, centre));
         double worst = 0;

@@ -81,7 +81,8 @@ TEST(Raster, AgreesWithTheDefinitionAtEveryLatticePoint) {
         const Region region = rasterise({polygon}, Frame{});
         for (int y = -25; y <= 25; ++y)
             for (int x = -25; x <= 25; ++x)
-                ASSERT_EQ(region.contains(x, y), insideByDefinition(polygon, x, y)) << n << " " << x << " " << y;
+                ASSERT_EQ(region.contains(x, y), insideByDefinition(polygon, x, y))
+                    << n << " " << x << " " << y;
     }
 }
 
@@ -92,7 +93,8 @@ TEST(Raster, PolygonsThatShareAnEdgeLeaveNoSlitAndDoNotOverlap) {
     Ring hull;
     const Point middle{20, 20};
     for (int i = 0; i < 16; ++i)
-        hull.push_back(middle + radius(random) * Point{std::cos(i * 0.3926990817), std::sin(i * 0.3926990817)});
+        hull.push_back(middle +
+                       radius(random) * Point{std::cos(i * 0.3926990817), std::sin(i * 0.3926990817)});
     std::int64_t sum = 0;
     std::vector<Polygon> fan;
     for (std::size_t i = 0; i < hull.size(); ++i) {
@@ -112,11 +114,17 @@ TEST(Raster, LongerSideHasTheWantedNumberOfPixels) {
     const Region region = rasterise(box, frame);
     EXPECT_EQ(region.pointCount(), 40 * 20);
     EXPECT_EQ(region.row(0), (Spans{{0, 39}}));
-    EXPECT_THAT(errorOf([] { frameAround({{{{{1, 1}, {1, 1}, {1, 1}}}}}, 10); }), HasSubstr("no ring has an extent"));
+    EXPECT_THAT(errorOf([] {
+                    frameAround({{{{{1, 1}, {1, 1}, {1, 1}}}}}, 10);
+                }),
+                HasSubstr("no ring has an extent"));
 }
 
 TEST(Raster, RefusesPointsTooFarAway) {
-    EXPECT_THAT(errorOf([] { rasterise({{{{{0, 0}, {1e12, 0}, {0, 1}}}}}, Frame{}); }), HasSubstr("2^28 pixels"));
+    EXPECT_THAT(errorOf([] {
+                    rasterise({{{{{0, 0}, {1e12, 0}, {0, 1}}}}}, Frame{});
+                }),
+                HasSubstr("2^28 pixels"));
 }
 
 // ---- images -----------------------------------------------------------------------------------------------
@@ -129,7 +137,8 @@ TEST_F(Images, PgmAndPbmInTextAndBytesSayTheSame) {
     EXPECT_EQ(readBitmap(file("b.pgm", std::string("P5\n3 2\n255\n\0\7\xff\14\15\16", 17))).values, grey);
     EXPECT_EQ(readBitmap(file("c.pbm", "P1\n3 2\n101\n0 0 1")).values, bits);
     EXPECT_EQ(readBitmap(file("d.pbm", "P4\n3 2\n\xa0\x20")).values, bits);
-    EXPECT_EQ(readBitmap(file("e.pgm", std::string("P5 1 1 65535\n\1\2", 15))).values, std::vector<float>{258});
+    EXPECT_EQ(readBitmap(file("e.pgm", std::string("P5 1 1 65535\n\1\2", 15))).values,
+              std::vector<float>{258});
 }
 
 TEST_F(Images, EveryTruncationIsRefused) {
@@ -155,9 +164,11 @@ TEST_F(Images, BadOnesAreRefusedInOneLine) {
     EXPECT_THAT(errorOf([&] { readBitmap(folder_ / "none.png"); }), HasSubstr("cannot be read"));
     EXPECT_THAT(errorOf([&] { readInput(folder_ / "none.png", {}); }), HasSubstr("there is no such file"));
     EXPECT_THAT(errorOf([&] { readBitmap(file("empty.png", "")); }), HasSubstr("is empty"));
-    EXPECT_THAT(errorOf([&] { readBitmap(file("text.png", "hello, I am a picture")); }), HasSubstr("neither PNG"));
+    EXPECT_THAT(errorOf([&] { readBitmap(file("text.png", "hello, I am a picture")); }),
+                HasSubstr("neither PNG"));
     EXPECT_THAT(errorOf([&] { readBitmap(file("zero.pgm", "P5\n0 3\n255\n")); }), HasSubstr("0 x 3 pixels"));
-    EXPECT_THAT(errorOf([&] { readBitmap(file("huge.pgm", "P5\n999999 999999\n255\n")); }), HasSubstr("2^31"));
+    EXPECT_THAT(errorOf([&] { readBitmap(file("huge.pgm", "P5\n999999 999999\n255\n")); }),
+                HasSubstr("2^31"));
     EXPECT_THAT(errorOf([&] { readInput(file("flat.pgm", "P2 2 2 255 9 9 9 9"), {}); }),
                 HasSubstr("every pixel is 9"));
     EXPECT_THAT(errorOf([&] { readInput(file("low.pgm", "P2 2 2 255 9 8 9 9"), {.iso = 100}); }),
@@ -172,13 +183,15 @@ TEST_F(Images, NotANumberIsRefusedWithItsPlace) {
     const auto tag = [&](std::uint16_t id, std::uint16_t type, std::uint32_t value) {
         const std::uint32_t count = 1;
         tiff.append(reinterpret_cast<const char*>(&id), 2).append(reinterpret_cast<const char*>(&type), 2);
-        tiff.append(reinterpret_cast<const char*>(&count), 4).append(reinterpret_cast<const char*>(&value), 4);
+        tiff.append(reinterpret_cast<const char*>(&count), 4)
+            .append(reinterpret_cast<const char*>(&value), 4);
     };
     tiff.append("\x0a\0", 2);
     tag(256, 3, 2), tag(257, 3, 2), tag(258, 3, 32), tag(259, 3, 1), tag(262, 3, 1), tag(273, 4, 8);
     tag(277, 3, 1), tag(278, 3, 2), tag(279, 4, 16), tag(339, 3, 3);
     tiff.append(4, '\0');
-    EXPECT_THAT(errorOf([&] { readBitmap(file("nan.tif", tiff)); }), HasSubstr("pixel (0, 1) is nan; 1 of 4"));
+    EXPECT_THAT(errorOf([&] { readBitmap(file("nan.tif", tiff)); }),
+                HasSubstr("pixel (0, 1) is nan; 1 of 4"));
 }
 
 TEST_F(Images, IsoLineOfAGreyImageLiesBetweenThePixels) {
@@ -230,15 +243,17 @@ TEST_F(Polygons, GeojsonOfEveryKindIsRead) {
 }
 
 TEST_F(Polygons, TopojsonArcsAreStitchedForwardsAndBackwards) {
-    const PolygonInput input = readPolygons(file(
-        "t.json", "{\"type\":\"Topology\",\"transform\":{\"scale\":[0.5,2],\"translate\":[10,20]},"
-                  "\"arcs\":[[[0,0],[4,0],[0,4]],[[0,0],[0,4],[4,0]]],"
-                  "\"objects\":{\"land\":{\"type\":\"Polygon\",\"arcs\":[[0,-2]]}}}"));
+    const PolygonInput input =
+        readPolygons(file("t.json",
+                          "{\"type\":\"Topology\",\"transform\":{\"scale\":[0.5,2],\"translate\":[10,20]},"
+                          "\"arcs\":[[[0,0],[4,0],[0,4]],[[0,0],[0,4],[4,0]]],"
+                          "\"objects\":{\"land\":{\"type\":\"Polygon\",\"arcs\":[[0,-2]]}}}"));
     ASSERT_EQ(input.ringCount(), 1u);
     EXPECT_EQ(input.polygons[0].rings[0], (Ring{{10, 20}, {12, 20}, {12, 28}, {10, 28}}));
     EXPECT_THAT(errorOf([&] {
-                    readPolygons(file("t.json", "{\"type\":\"Topology\",\"arcs\":[[[0,0],[1,1]]],\"objects\":"
-                                                "{\"l\":{\"type\":\"Polygon\",\"arcs\":[[7]]}}}"));
+                    readPolygons(file("t.json",
+                                      "{\"type\":\"Topology\",\"arcs\":[[[0,0],[1,1]]],\"objects\":"
+                                      "{\"l\":{\"type\":\"Polygon\",\"arcs\":[[7]]}}}"));
                 }),
                 HasSubstr("arc 7 of 1"));
 }
@@ -260,7 +275,8 @@ TEST_F(Polygons, WhatIsRepairedIsSaidWithItsRing) {
     };
     const std::string good = "[[0,0],[4,0],[4,4],[0,4],[0,0]]";
     EXPECT_EQ(remark(good), "");
-    EXPECT_THAT(remark(good + ",[[1,1],[1,2],[2,2]]"), HasSubstr("not closed, closed (first: polygon 0, ring 1)"));
+    EXPECT_THAT(remark(good + ",[[1,1],[1,2],[2,2]]"),
+                HasSubstr("not closed, closed (first: polygon 0, ring 1)"));
     EXPECT_THAT(remark(good + ",[[1,1],[1,1],[1,1]]"), HasSubstr("fewer than three"));
     EXPECT_THAT(remark("[[0,0],[4,4],[4,0],[0,4],[0,0]]"), HasSubstr("meeting themselves"));
     EXPECT_THAT(remark("[[0,0],[4,0],[2,0],[2,4],[0,0]]"), HasSubstr("meeting themselves"));  // a spike
@@ -281,9 +297,7 @@ TEST_F(Polygons, BadOnesAreRefusedInOneLine) {
                 HasSubstr("point 1 is (1e+99, 1)"));
     EXPECT_THAT(error("a.txt", "0 0\n1 nan\n2 2\n"), HasSubstr("coordinates up to 1e9"));
     EXPECT_THAT(error("a.txt", "0 0\nhello\n"), HasSubstr("line 2: 'hello'"));
-    EXPECT_THAT(errorOf([&] {
-                    readInput(file("thin.txt", "0 0\n100 0.001\n100 0\n"), {.pixels = 10});
-                }),
+    EXPECT_THAT(errorOf([&] { readInput(file("thin.txt", "0 0\n100 0.001\n100 0\n"), {.pixels = 10}); }),
                 HasSubstr("no pixel's middle"));
 }
 
@@ -336,11 +350,12 @@ TEST_F(Drawing, GeojsonAndTextComeBackAsTheSameRings) {
 
 TEST_F(Drawing, WrittenRingsAreStillSimpleInTheInputsCoordinates) {
     const Input input = readInput(kData / "africa.geojson", {.pixels = 363});
-    climb(fit(input.shape, Fit::distance), 8, [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
-        if (curves.rings.empty()) return;
-        writeGeojson(folder_ / "a.geojson", curves, "Africa");
-        EXPECT_THAT(readPolygons(folder_ / "a.geojson").remarks, IsEmpty()) << facts.step;
-    });
+    climb(fit(input.shape, Fit::distance), 8,
+          [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+              if (curves.rings.empty()) return;
+              writeGeojson(folder_ / "a.geojson", curves, "Africa");
+              EXPECT_THAT(readPolygons(folder_ / "a.geojson").remarks, IsEmpty()) << facts.step;
+          });
 }
 
 TEST_F(Drawing, PngShowsTheAreaAndNorthUp) {

@@ -76,7 +76,8 @@ TEST(RowField, EveryUnknownPointHasOneSignHoweverTheRowsRun) {
             const Bounds box = field.bounds();
             for (std::int32_t y = box.first[1] - 2; y <= box.last[1] + 2; ++y)
                 for (std::int32_t x = box.first[0] - 2; x <= box.last[0] + 2; ++x)
-                    ASSERT_EQ(field.at(x, y), other.at(x, y)) << name << " step " << step << " " << x << " " << y;
+                    ASSERT_EQ(field.at(x, y), other.at(x, y))
+                        << name << " step " << step << " " << x << " " << y;
             field = transposed(analyseDirection(field).coarse);
         }
     }
@@ -89,7 +90,8 @@ TEST(RowField, SignsOfUnknownPointsAreTheInputs) {
     int inside = 0;
     for (std::int32_t y = -3; y < 90; ++y)
         for (std::int32_t x = -3; x < 90; ++x) {
-            const auto fx = x + static_cast<std::int32_t>(shift.x), fy = y + static_cast<std::int32_t>(shift.y);
+            const auto fx = x + static_cast<std::int32_t>(shift.x),
+                       fy = y + static_cast<std::int32_t>(shift.y);
             if (field.isKnown(fx, fy)) continue;
             EXPECT_EQ(field.at(fx, fy), shape.inside.contains(x, y) ? -1 : 1);
             inside += shape.inside.contains(x, y);
@@ -107,15 +109,16 @@ TEST(RowField, SampleAgreesWithTheLatticeFilterAndItsGradientWithDifferences) {
             const Point p{5 + 0.37 * i, 70 - 0.31 * i};
             const Sample s = sample(f, p);
             const double h = 1e-5;
-            EXPECT_NEAR(s.gradient.x, (sample(f, p + Point{h, 0}).value - sample(f, p - Point{h, 0}).value) / (2 * h),
+            EXPECT_NEAR(s.gradient.x,
+                        (sample(f, p + Point{h, 0}).value - sample(f, p - Point{h, 0}).value) / (2 * h),
                         1e-8);
-            EXPECT_NEAR(s.gradient.y, (sample(f, p + Point{0, h}).value - sample(f, p - Point{0, h}).value) / (2 * h),
+            EXPECT_NEAR(s.gradient.y,
+                        (sample(f, p + Point{0, h}).value - sample(f, p - Point{0, h}).value) / (2 * h),
                         1e-8);
             double value = 0;
             const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
             for (int b = -1; b <= 1; ++b)
-                for (int a = -1; a <= 1; ++a)
-                    value += (a ? 1 : 4) * (b ? 1 : 4) / 36.0 * f.at(x + a, y + b);
+                for (int a = -1; a <= 1; ++a) value += (a ? 1 : 4) * (b ? 1 : 4) / 36.0 * f.at(x + a, y + b);
             EXPECT_NEAR(sample(f, {double(x), double(y)}).value, value, 1e-15);
         }
 }
@@ -188,9 +191,7 @@ double worstRoundTrip() {
     return worst;
 }
 
-TEST(PlanePyramid, RoundTripInFloatIsWithinTenToTheMinusFive) {
-    EXPECT_LT(worstRoundTrip<float>(), 1e-5);
-}
+TEST(PlanePyramid, RoundTripInFloatIsWithinTenToTheMinusFive) { EXPECT_LT(worstRoundTrip<float>(), 1e-5); }
 TEST(PlanePyramid, RoundTripInDoubleIsWithinTenToTheMinusTwelve) {
     EXPECT_LT(worstRoundTrip<double>(), 1e-12);
 }
@@ -218,7 +219,8 @@ TEST(PlanePyramid, SameToTheBitForAnyNumberOfThreads) {
 }
 
 TEST(PlanePyramid, RefusesPartsThatDoNotBelongTogether) {
-    Pyramid<float> a = analyse(fitBinary<float>(shapes::disc(20))), b = analyse(fitBinary<float>(shapes::disc(9)));
+    Pyramid<float> a = analyse(fitBinary<float>(shapes::disc(20))),
+                   b = analyse(fitBinary<float>(shapes::disc(9)));
     std::swap(a.steps[1], b.steps[1]);
     EXPECT_THROW(a.field(0), InputError);
     Pyramid<float> c = analyse(fitBinary<float>(shapes::disc(20)));
@@ -265,11 +267,13 @@ TEST_P(Oracle, ControlPointsDetailsAndShapesAgree) {
     std::ifstream stream(std::string(ISOWAVE_TEST_DATA "/oracle/") + GetParam() + ".json");
     const Json json = Json::parse(stream);
     std::vector<RowField<double>> fields;
-    const Pyramid<double> pyramid = analyse<double>(fieldOf(json["fields"][0]), static_cast<int>(json["details"].size()), {},
-                                                    [&](int, const RowField<double>& f) { fields.push_back(f); });
+    const Pyramid<double> pyramid =
+        analyse<double>(fieldOf(json["fields"][0]), static_cast<int>(json["details"].size()), {},
+                        [&](int, const RowField<double>& f) { fields.push_back(f); });
     ASSERT_EQ(fields.size(), json["fields"].size());
     for (std::size_t s = 0; s < fields.size(); ++s)
-        EXPECT_LT(difference(fields[s], fieldOf(json["fields"][s])), 1e-7) << "step " << s;  // seen 1e-9: its digits
+        EXPECT_LT(difference(fields[s], fieldOf(json["fields"][s])), 1e-7)
+            << "step " << s;  // seen 1e-9: its digits
     for (std::size_t s = 0; s < pyramid.steps.size(); ++s) {
         const Json& expected = json["details"][s];
         ASSERT_EQ(expected["axis"], pyramid.steps[s].axis);

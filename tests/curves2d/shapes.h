@@ -37,8 +37,8 @@ inline Shape blobs(std::int32_t size, int count, unsigned seed) {
     };
     std::vector<Bump> bumps;
     for (int i = 0; i < count; ++i)
-        bumps.push_back({uniform(random) * size, uniform(random) * size, (0.02 + 0.15 * uniform(random)) * size,
-                         uniform(random) - 0.45});
+        bumps.push_back({uniform(random) * size, uniform(random) * size,
+                         (0.02 + 0.15 * uniform(random)) * size, uniform(random) - 0.45});
     return bitmap(size, size, [&](int x, int y) {
         double sum = 0;
         for (const Bump& b : bumps)
@@ -69,8 +69,9 @@ inline std::vector<std::pair<std::string, Shape>> all() {
     zoo.emplace_back("border-touching", bitmap(40, 30, [](int x, int y) { return x < 5 || y > 25; }));
     zoo.emplace_back("1-pixel line", bitmap(60, 3, [](int, int y) { return y == 1; }));
     zoo.emplace_back("1-pixel diagonal", bitmap(30, 30, [](int x, int y) { return x == y; }));
-    zoo.emplace_back("1-pixel slit",
-                     bitmap(40, 40, [](int x, int y) { return x > 4 && x < 35 && y > 4 && y < 35 && y != 20; }));
+    zoo.emplace_back("1-pixel slit", bitmap(40, 40, [](int x, int y) {
+                         return x > 4 && x < 35 && y > 4 && y < 35 && y != 20;
+                     }));
     zoo.emplace_back("checkerboard", bitmap(24, 24, [](int x, int y) { return (x + y) % 2 == 0; }));
     zoo.emplace_back("coarse checkerboard",
                      bitmap(40, 40, [](int x, int y) { return (x / 5 + y / 5) % 2 == 0; }));

@@ -20,9 +20,10 @@ Arguments curves(const std::string& input, const Folder& folder, Arguments more 
 
 TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
     const Folder folder;
-    const Result result = isowave(curves(kAfrica, folder, {"--pixels", "120", "--format", "geojson", "--table", "--sheet",
-                                                       (folder / "sheet.svg").string(), "--json",
-                                                       (folder / "report.json").string()}));
+    const Result result =
+        isowave(curves(kAfrica, folder,
+                       {"--pixels", "120", "--format", "geojson", "--table", "--sheet",
+                        (folder / "sheet.svg").string(), "--json", (folder / "report.json").string()}));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_THAT(result.out, HasSubstr("step"));
     EXPECT_THAT(result.out, HasSubstr("1a"));
@@ -32,8 +33,8 @@ TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
     ASSERT_GT(report["steps"].size(), 8u);
     std::size_t files = 0;
     for (const auto& step : report["steps"]) {
-        for (const char* key : {"step", "level", "file", "domain", "control_points", "nodes", "rings", "holes", "points",
-                                "area", "max_to_level0", "rms_to_level0"})
+        for (const char* key : {"step", "level", "file", "domain", "control_points", "nodes", "rings",
+                                "holes", "points", "area", "max_to_level0", "rms_to_level0"})
             EXPECT_TRUE(step.contains(key)) << key;
         EXPECT_EQ(step["level"].is_null(), step["step"].get<int>() % 2 == 1);
         if (step["file"].is_null()) continue;
@@ -62,7 +63,8 @@ TEST(CurvesCommand, OneThreadAndFourWriteTheSameBytes) {
 TEST(CurvesCommand, EveryFormatAndSmoothCurves) {
     for (const char* format : {"svg", "geojson", "png", "txt"}) {
         const Folder folder;
-        const Result result = isowave(curves(kKeys, folder, {"--invert", "--format", format, "--levels", "0..1"}));
+        const Result result =
+            isowave(curves(kKeys, folder, {"--invert", "--format", format, "--levels", "0..1"}));
         ASSERT_EQ(result.exitCode, 0) << result.err;
         EXPECT_TRUE(fs::exists(folder / ("out/map/map_L1." + std::string(format))));
         EXPECT_FALSE(fs::exists(folder / ("out/map/map_L2." + std::string(format))));
@@ -87,7 +89,11 @@ TEST(CurvesCommand, BadInputGivesOneLineItsExitCodeAndNoFiles) {
         {"a.pgm", "P2 2 2 255 5 5 5 5", {}, 3, "every pixel is 5"},
         {"a.pgm", "P2 2 2 255 5 5 5 6", {"--iso", "200"}, 3, "from 5 to 6"},
         {"a.pgm", "P2 2 2 255 5 5", {}, 3, "truncated"},
-        {"a.geojson", "{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[1e300,1],[2,2]]]}", {}, 3, "polygon 0, ring 0"},
+        {"a.geojson",
+         "{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[1e300,1],[2,2]]]}",
+         {},
+         3,
+         "polygon 0, ring 0"},
         {"a.geojson", "{\"type\":\"LineString\",\"coordinates\":[[0,0],[1,1]]}", {}, 3, "no polygon"},
         {"a.txt", "0 0\n1 x\n", {}, 3, "line 2"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--levels", "90..95"}, 3, "ends at level"},
