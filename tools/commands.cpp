@@ -89,9 +89,9 @@ Value choice(const std::string& text, const std::array<std::pair<std::string_vie
 
 // ---- the table ----
 
-constexpr std::string_view kFit = "lod analyse mesh field";          // those that turn an input into a field
+constexpr std::string_view kFit = "lod analyse mesh field";  // those that turn an input into a field
 constexpr std::string_view kShaped = "lod analyse mesh field curves";  // those that fit a field
-constexpr std::string_view kImages = "lod analyse mesh field info";  // those that read images
+constexpr std::string_view kImages = "lod analyse mesh field info";    // those that read images
 constexpr std::string_view kAll = "lod analyse mesh field info check compare curves";
 
 constexpr Command kCommands[] = {
@@ -147,7 +147,10 @@ constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kFormats{{{"stl
                                                                            {"off", MeshFormat::off},
                                                                            {"glb", MeshFormat::glb}}};
 constexpr std::array<std::pair<std::string_view, CurveFormat>, 4> kCurveFormats{
-    {{"svg", CurveFormat::svg}, {"geojson", CurveFormat::geojson}, {"png", CurveFormat::png}, {"txt", CurveFormat::txt}}};
+    {{"svg", CurveFormat::svg},
+     {"geojson", CurveFormat::geojson},
+     {"png", CurveFormat::png},
+     {"txt", CurveFormat::txt}}};
 constexpr std::array<std::pair<std::string_view, FitMethod>, 2> kMethods{
     {{"binary", FitMethod::binary}, {"distance", FitMethod::distance}}};
 constexpr std::array<std::pair<std::string_view, Space>, 2> kSpaces{
@@ -165,7 +168,8 @@ constexpr std::int64_t kHuge = std::int64_t{1} << 40;
 
 constexpr Option kOptions[] = {
     // What comes out.
-    {"-o,--output", "PATH", "", "where the result goes: a folder for lod and curves, a file otherwise", kShaped,
+    {"-o,--output", "PATH", "", "where the result goes: a folder for lod and curves, a file otherwise",
+     kShaped,
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");
          s.output = v;
