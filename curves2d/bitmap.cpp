@@ -130,6 +130,78 @@ class Pnm {
     std::size_t at_ = 2;
 };
 
+// ---- files that ITK's readers would abort on, or read as black where they end ----
+
+std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return value;
+}
+
+std::uint32_t littleEndian(const std::string& bytes, std::size_t at, std::size_t size) {
+    std::uint32_t value = 0;
+    for (std::size_t k = size; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return value;
+}
+
+// The checksum of PNG's chunks: the reflected polynomial 0xEDB88320 (ISO 3309).
+std::uint32_t checksum(const std::string& bytes, std::size_t begin, std::size_t end) {
+    std::uint32_t crc = 0xffffffffu;
+    for (std::size_t i = begin; i < end; ++i) {
+        crc ^= static_cast<unsigned char>(bytes[i]);
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0u);
+    }
+    return ~crc;
+}
+
+void checkPngHeader(const std::string& name, const std::string& bytes, std::size_t content) {
+    checkSize(name, bigEndian(bytes, content), bigEndian(bytes, content + 4));
+    const int depth = bytes[content + 8], colour = bytes[content + 9];
+    const bool power = depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16;
+    const bool whole = depth == 8 || depth == 16;
+    const bool good = (colour == 0 && power) || (colour == 3 && power && depth < 16) ||
+                      ((colour == 2 || colour == 4 || colour == 6) && whole);
+    if (!good)
+        throw InputError(
+            name, fmt::format("PNG of colour type {} with {} bits; there is none such", colour, depth));
+}
+
+// ITK 5.2 gives libpng no way out of an error in the header, so libpng aborts the process: every chunk is
+// checked first. Chunks: length, four letters, content, checksum of the last two.
+void checkPng(const std::string& name, const std::string& bytes) {
+    std::size_t at = 8;
+    for (bool end = false; !end;) {
+        if (bytes.size() < at + 12 || bytes.size() - at - 12 < bigEndian(bytes, at))
+            throw InputError(name, fmt::format("this PNG ends after {} bytes, before its last chunk; it is "
+                                               "truncated",
+                                               bytes.size()));
+        const std::size_t size = bigEndian(bytes, at), body = at + 4, last = body + 4 + size;
+        const std::string kind = bytes.substr(body, 4);
+        if (checksum(bytes, body, last) != bigEndian(bytes, last))
+            throw InputError(
+                name, fmt::format("the PNG chunk at byte {} has a wrong checksum; the file is damaged", at));
+        if (at == 8) {
+            if (kind != "IHDR" || size != 13)
+                throw InputError(name, "this PNG does not begin with its header");
+            checkPngHeader(name, bytes, body + 4);
+        }
+        end = kind == "IEND";
+        at = last + 4;
+    }
+}
+
+void checkBmp(const std::string& name, const std::string& bytes) {
+    if (bytes.size() < 54) throw InputError(name, "this BMP ends within its header; it is truncated");
+    const std::int64_t width = static_cast<std::int32_t>(littleEndian(bytes, 18, 4)),
+                       height = std::abs(std::int64_t{static_cast<std::int32_t>(littleEndian(bytes, 22, 4))}),
+                       bits = littleEndian(bytes, 28, 2);
+    checkSize(name, width, height);
+    const std::int64_t needed = littleEndian(bytes, 10, 4) + (width * bits + 31) / 32 * 4 * height;
+    if (littleEndian(bytes, 30, 4) == 0 && static_cast<std::int64_t>(bytes.size()) < needed)
+        throw InputError(name,
+                         fmt::format("this BMP holds {} bytes of {}; it is truncated", bytes.size(), needed));
+}
+
 // ---- PNG, TIFF, BMP
 // ------------------------------------------------------------------------------------------
 
@@ -290,14 +362,17 @@ Bitmap readBitmap(const std::filesystem::path& path) {
     char magic[3] = {};
     stream.read(magic, 3);
     if (stream.gcount() == 0) throw InputError(name, "is empty; expected an image or polygons");
+    stream.clear();
+    stream.seekg(0);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     Bitmap bitmap;
     const bool blank = std::isspace(static_cast<unsigned char>(magic[2])) || magic[2] == '#';
     if (magic[0] == 'P' && blank &&
         (magic[1] == '1' || magic[1] == '2' || magic[1] == '4' || magic[1] == '5')) {
-        stream.clear();
-        stream.seekg(0);
-        bitmap = Pnm(name, {std::istreambuf_iterator<char>(stream), {}}).read(magic[1]);
+        bitmap = Pnm(name, bytes).read(magic[1]);
     } else {
+        if (bytes.compare(0, 8, "\x89PNG\r\n\x1a\n", 8) == 0) checkPng(name, bytes);
+        if (bytes.compare(0, 2, "BM") == 0) checkBmp(name, bytes);
         try {
             bitmap = readWithItk(name);
         } catch (const itk::ExceptionObject& error) {

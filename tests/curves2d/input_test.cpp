@@ -145,9 +145,20 @@ TEST_F(Images, EveryTruncationIsRefused) {
     const std::string whole = std::string("P5\n3 2\n255\n\0\7\xff\14\15\16", 17);
     for (std::size_t n = 0; n < whole.size(); ++n)
         EXPECT_THROW(readBitmap(file("cut.pgm", whole.substr(0, n))), InputError) << n;
+    // 2 x 2 pixels of 24 bits, rows of 8 bytes.
+    std::string bmp("BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0", 30);
+    bmp += std::string(24, '\0') + std::string("\xff\xff\xff\0\0\0\0\0\0\0\0\xff\xff\xff\0\0", 16);
+    EXPECT_EQ(readBitmap(file("a.bmp", bmp)).values, (std::vector<float>{0, 255, 255, 0}));
+    for (std::size_t n = 2; n < bmp.size(); ++n)
+        EXPECT_THROW(readBitmap(file("cut.bmp", bmp.substr(0, n))), InputError) << n;
     const std::string png = read(kData / "keyring.png");
     for (std::size_t n = 0; n + 200 < png.size(); n += png.size() / 40)
         EXPECT_THROW(readBitmap(file("cut.png", png.substr(0, n))), InputError) << n;
+    for (std::size_t n = 8; n < png.size(); n += png.size() / 40) {
+        std::string damaged = png;
+        damaged[n] = static_cast<char>(damaged[n] ^ 1);
+        EXPECT_THROW(readBitmap(file("damaged.png", damaged)), InputError) << n;
+    }
 }
 
 TEST_F(Images, PngIsReadWithColoursAsLuminanceAndClearPixelsOnWhite) {
