@@ -7,6 +7,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(tsl-robin-map REQUIRED)
 
 # OpenVDB ships only a Find module, in a folder that also holds a FindTBB of its own: put the folder on
 # the module path for this one call and take it off again.

@@ -89,11 +89,12 @@ Value choice(const std::string& text, const std::array<std::pair<std::string_vie
 
 // ---- the table ----
 
-constexpr std::string_view kOutput = "lod analyse mesh field curve-levels relief";
-constexpr std::string_view kFit = "lod analyse mesh field";          // those that turn an input into a field
-constexpr std::string_view kImages = "lod analyse mesh field info";  // those that read images
-constexpr std::string_view kAll = "lod analyse mesh field info check compare";
-constexpr std::string_view kQuiet = "lod analyse mesh field info check compare filters curve-levels relief";
+constexpr std::string_view kOutput = "lod analyse mesh field curve-levels relief curves";
+constexpr std::string_view kFit = "lod analyse mesh field";            // those that turn an input into a field
+constexpr std::string_view kShaped = "lod analyse mesh field curves";  // those that fit a field
+constexpr std::string_view kImages = "lod analyse mesh field info";    // those that read images
+constexpr std::string_view kAll = "lod analyse mesh field info check compare curves";
+constexpr std::string_view kQuiet = "lod analyse mesh field info check compare curves filters curve-levels relief";
 
 constexpr Command kCommands[] = {
     {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
@@ -152,6 +153,12 @@ constexpr Command kCommands[] = {
      "coarsest "
      "level subdivided back, without details) and reconstructed.npy.",
      true, runRelief},
+    {"curves", "INPUT", "a bitmap or polygons -> a ladder of closed planar curves, one a level",
+     "INPUT is an image (PNG, TIFF, BMP, PGM, PBM) or polygons (GeoJSON, TopoJSON, text with rings as lines "
+     "'x y'). -o out/africa makes the folder out/africa with africa_L0.svg, africa_L1.svg, ...; a level at "
+     "which nothing is left has no file. Level L is step 2L: both axes halved L times. Outer rings have "
+     "positive area, holes negative, in the input's own coordinates.",
+     true, runCurves},
     {"help", "[COMMAND]", "this overview, or the options of one subcommand", "", false, runHelp},
     {"completion", "bash", "a completion script for the shell: source <(isowave completion bash)", "", false,
      runCompletion},
@@ -162,6 +169,11 @@ constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kFormats{{{"stl
                                                                            {"obj", MeshFormat::obj},
                                                                            {"off", MeshFormat::off},
                                                                            {"glb", MeshFormat::glb}}};
+constexpr std::array<std::pair<std::string_view, CurveFormat>, 4> kCurveFormats{
+    {{"svg", CurveFormat::svg},
+     {"geojson", CurveFormat::geojson},
+     {"png", CurveFormat::png},
+     {"txt", CurveFormat::txt}}};
 constexpr std::array<std::pair<std::string_view, FitMethod>, 2> kMethods{
     {{"binary", FitMethod::binary}, {"distance", FitMethod::distance}}};
 constexpr std::array<std::pair<std::string_view, Space>, 2> kSpaces{
@@ -180,12 +192,12 @@ constexpr std::int64_t kHuge = std::int64_t{1} << 40;
 constexpr Option kOptions[] = {
     // What comes out.
     {"-o,--output", "PATH", "",
-     "where the result goes: a folder for lod, curve-levels and relief, a file otherwise", kOutput,
+     "where the result goes: a folder for lod, curves, curve-levels and relief, a file otherwise", kOutput,
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");
          s.output = v;
      }},
-    {"--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)", "lod",
+    {"--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)", "lod curves",
      [](Settings& s, const std::string& v) { s.levels = range(v); }},
     {"--steps", "A..B", "", "steps instead of levels; three steps are a level", "lod",
      [](Settings& s, const std::string& v) { s.steps = range(v); }},
@@ -196,6 +208,20 @@ constexpr Option kOptions[] = {
     {"--format", "stl|ply|obj|off|glb", "ply for lod, by the file's extension for mesh",
      "format of the meshes", "lod mesh",
      [](Settings& s, const std::string& v) { s.format = choice(v, kFormats); }},
+    {"--format", "svg|geojson|png|txt", "svg", "format of the curves", "curves",
+     [](Settings& s, const std::string& v) { s.curveFormat = choice(v, kCurveFormats); }},
+    {"--smooth", "", "", "SVG: cubic Beziers along the zero set instead of straight pieces", "curves",
+     [](Settings& s, const std::string&) { s.smooth = true; }},
+    {"--tolerance", "T", "smooth: 0.1; otherwise no added points",
+     "the drawn curve stays within T pixels of level 0 of the zero set, by added points", "curves",
+     [](Settings& s, const std::string& v) { s.tolerance = positive(v); }},
+    {"--table", "", "", "print a table of the steps: domain, control points, nodes, rings, area", "curves",
+     [](Settings& s, const std::string&) { s.table = true; }},
+    {"--sheet", "FILE", "", "one SVG with all levels side by side", "curves",
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.sheet = v;
+     }},
     {"--space", "lps|ras", "lps for images, as it is for meshes",
      "axes of the written coordinates, for medical images and meshes that say SPACE=", "lod mesh",
      [](Settings& s, const std::string& v) { s.space = choice(v, kSpaces); }},
@@ -205,7 +231,7 @@ constexpr Option kOptions[] = {
          s.refine =
              choice(v, std::array<std::pair<std::string_view, int>, 3>{{{"1", 1}, {"2", 2}, {"4", 4}}});
      }},
-    {"--json", "FILE", "", "the report goes to this file too; - is standard output", "lod",
+    {"--json", "FILE", "", "the report goes to this file too; - is standard output", "lod curves",
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");
          s.jsonFile = v;
@@ -217,9 +243,16 @@ constexpr Option kOptions[] = {
     {"--iso", "V", "masks: midpoint; labels: not zero; level sets: 0; other images: required",
      "the surface is where the value is V; inside is where it is larger (level sets: smaller)", kFit,
      [](Settings& s, const std::string& v) { s.iso = number(v); }},
+    {"--iso", "V", "the middle of the range of values",
+     "images: the curve is where the value is V; inside is where it is larger", "curves",
+     [](Settings& s, const std::string& v) { s.iso = number(v); }},
+    {"--pixels", "N", "1024", "polygons: sample with N pixels along the longer side", "curves",
+     [](Settings& s, const std::string& v) {
+         s.pixels = static_cast<std::int32_t>(integer(v, 1, std::int64_t{1} << 22));
+     }},
     {"--label", "L", "every label but 0", "the solid is where a label image is L", kFit,
      [](Settings& s, const std::string& v) { s.label = number(v); }},
-    {"--invert", "", "", "swap inside and outside", kFit,
+    {"--invert", "", "", "swap inside and outside", kShaped,
      [](Settings& s, const std::string&) { s.invert = true; }},
     {"--open-border", "", "", "no cap where the solid touches the border of the image", kFit,
      [](Settings& s, const std::string&) { s.openBorder = true; }},
@@ -230,11 +263,11 @@ constexpr Option kOptions[] = {
 
     // The fit.
     {"--fit", "binary|distance", "binary for masks and labels, otherwise distance",
-     "from signs alone (filtered weights), or from signed distances", kFit,
+     "from signs alone (filtered weights), or from signed distances", kShaped,
      [](Settings& s, const std::string& v) { s.fit = choice(v, kMethods); }},
-    {"--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side", kFit,
+    {"--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side", kShaped,
      [](Settings& s, const std::string& v) { s.halfWidth = positive(v); }},
-    {"--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W", kFit,
+    {"--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W", kShaped,
      [](Settings& s, const std::string& v) { s.band = positive(v); }},
 
     // How to read the input.

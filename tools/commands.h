@@ -64,6 +64,7 @@ int runCompare(const Settings&, Console&);
 int runFilters(const Settings&, Console&);
 int runCurveLevels(const Settings&, Console&);
 int runRelief(const Settings&, Console&);
+int runCurves(const Settings&, Console&);
 int runHelp(const Settings&, Console&);
 int runCompletion(const Settings&, Console&);
 

@@ -20,6 +20,7 @@ class UsageError : public std::runtime_error {
 };
 
 enum class FitMethod { binary, distance };
+enum class CurveFormat { svg, geojson, png, txt };
 
 // A..B, both included; without B: as far as the pyramid goes.
 struct StepRange {
@@ -80,6 +81,12 @@ struct Settings {
     bool boundary = false;
     bool table = false;
     std::optional<std::filesystem::path> svg;
+    // Planar curves.
+    std::optional<std::int32_t> pixels;         // along the longer side of the polygons
+    std::optional<CurveFormat> curveFormat;
+    std::optional<double> tolerance;            // pixels of level 0
+    std::optional<std::filesystem::path> sheet;
+    bool smooth = false;
 
     // How the job runs.
     int threads = 0;                  // 0 = all

@@ -316,7 +316,11 @@ def golden(folder):
     sheet[1:11, 1:8, 2] = True
     sheet[4:6, 3:5, 2] = False
     noise = rng.random((6, 6, 6)) < 0.5
-    files = {'intervals': golden_intervals(), 'part': golden_field(part, 7), 'sheet': golden_field(sheet, 7),
+    y, x = np.mgrid[:40, :34] - 16.5
+    disc = (np.hypot(x, y) < 15) & ~(np.hypot(x - 5, y + 3) < 4.2) & ~(np.hypot(x + 7, y) < 1.5)
+    plane_noise = rng.random((24, 17)) < 0.5
+    files = {'plane': golden_field(disc, 8), 'plane_noise': golden_field(plane_noise, 8),
+             'intervals': golden_intervals(), 'part': golden_field(part, 7), 'sheet': golden_field(sheet, 7),
              'noise': golden_field(noise, 7)}
     for name, content in files.items():
         with open('%s/%s.json' % (folder, name), 'w') as out:

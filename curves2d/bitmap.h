@@ -1,0 +1,39 @@
+// Images -> what is inside. PNG, TIFF and BMP through ITK; PGM and PBM here, ITK does not know them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "curves2d/fit.h"
+
+namespace isowave::curves2d {
+
+// One number a pixel, row by row from the top; pixel (x, y) is lattice point (x, y), its middle.
+struct Bitmap {
+    std::int32_t width = 0, height = 0;
+    std::vector<float> values;
+
+    float at(std::int32_t x, std::int32_t y) const {
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+};
+
+struct ValueRange {
+    float low, high;
+    bool twoValues;  // a mask: no other value occurs
+};
+ValueRange valueRange(const Bitmap& bitmap);
+
+// Grey values as stored. Colours as luminance (Rec. 601: 0.299 R + 0.587 G + 0.114 B), transparent pixels
+// laid on white. PBM: black 0, white 255. Throws InputError: not an image, truncated, zero size, several
+// pages, NaN.
+Bitmap readBitmap(const std::filesystem::path& path);
+
+// Inside is where the value exceeds `iso` (with `invert`: where it does not). What touches the border of the
+// image is closed half a pixel outside it. boundary: the iso line of the bilinear interpolation, in chords.
+// name: for the message. Throws InputError when every pixel lies on one side (says the range) unless the
+// image is full, which is a rectangle.
+Shape shapeOf(const Bitmap& bitmap, double iso, bool invert, const std::string& name);
+
+}  // namespace isowave::curves2d

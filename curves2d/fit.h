@@ -1,0 +1,56 @@
+// From signs or distances to a planar B-spline field whose sign agrees with the input at every lattice point
+// near the curve. The 3D twin, with what was measured, is volume/fit.h.
+#pragma once
+
+#include "base/progress.h"
+#include "curves2d/row_field.h"
+
+namespace isowave::curves2d {
+
+// What a bitmap or a set of polygons comes to.
+struct Shape {
+    Frame frame;                    // where lattice point (i, j) lies in the input's coordinates
+    Region inside;                  // the lattice points inside
+    std::vector<Segment> boundary;  // lattice coordinates, any order; only fitDistance needs it
+};
+
+// Both fits shift the lattice where control points would lie below -1 on an axis, so that the first one lies
+// at -1, and move the frame the other way: every field then ends at a single node. World coordinates stay.
+
+struct FitReport {
+    std::int64_t latticePoints = 0;  // of I
+    std::int64_t disagreeing = 0;    // of these, whose sign is not the input's (0 unless the repair gave up)
+    int repairPasses = 0;            // passes until no lattice point needed repair
+    std::int64_t repaired = 0;       // control points changed by the repair, counted once a pass
+};
+
+struct BinaryFitOptions {
+    int passes = 3;  // Laplacian passes
+    double K = 1.0;
+};
+
+struct DistanceFitOptions {
+    double halfWidth = 4.0;  // w in lattice steps: the distance is clamped to ±w, and ±w becomes ±K
+    double band = 2.0;       // b in lattice steps: nodes with a corner nearer than b are kept; 0 < b <= w
+    double K = 1.0;
+};
+
+// E section 2: ±K weights on I (stabbed nodes dilated by {-1,0,1,2}), `passes` of the discrete Laplacian
+// filter on I, then the repair: while a lattice point has s F < 0.05 K, its control point changes by
+// 0.1 K s - F. An empty shape gives an empty field.
+template <class Real>
+RowField<Real> fitBinary(const Shape& shape, const BinaryFitOptions& options = {},
+                         FitReport* report = nullptr, const Progress& progress = {});
+
+// Signed distance to shape.boundary, sign from shape.inside, then quasi-interpolation
+// c = (8 v_i - v_{i-1} - v_{i+1})/6 on each axis and the repair.
+template <class Real>
+RowField<Real> fitDistance(const Shape& shape, const DistanceFitOptions& options = {},
+                           FitReport* report = nullptr, const Progress& progress = {});
+
+// For tests and for who wants only the shape: nodes (unit squares, by their lower corner) whose corner signs
+// differ, and I around a set of nodes.
+Region stabbedNodes(const Region& inside);
+Region knownAround(const Region& nodes);
+
+}  // namespace isowave::curves2d

@@ -1,0 +1,119 @@
+// `isowave curves`, through the program itself.
+#include <gmock/gmock.h>
+
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+const std::string kAfrica = ISOWAVE_TEST_DATA "/curves2d/africa.geojson";
+const std::string kKeys = ISOWAVE_TEST_DATA "/curves2d/keyring.png";
+
+Arguments curves(const std::string& input, const Folder& folder, Arguments more = {}) {
+    Arguments arguments{"curves", input, "-o", (folder / "out/map").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
+    const Folder folder;
+    const Result result =
+        isowave(curves(kAfrica, folder,
+                       {"--pixels", "120", "--format", "geojson", "--table", "--sheet",
+                        (folder / "sheet.svg").string(), "--json", (folder / "report.json").string()}));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("step"));
+    EXPECT_THAT(result.out, HasSubstr("1a"));
+    const auto report = nlohmann::json::parse(contentOf(folder / "report.json"));
+    EXPECT_EQ(report["version"], 1);
+    EXPECT_GT(report["coefficients_stored"], report["control_points"]);
+    ASSERT_GT(report["steps"].size(), 8u);
+    std::size_t files = 0;
+    for (const auto& step : report["steps"]) {
+        for (const char* key : {"step", "level", "file", "domain", "control_points", "nodes", "rings",
+                                "holes", "points", "area", "max_to_level0", "rms_to_level0"})
+            EXPECT_TRUE(step.contains(key)) << key;
+        EXPECT_EQ(step["level"].is_null(), step["step"].get<int>() % 2 == 1);
+        if (step["file"].is_null()) continue;
+        ++files;
+        EXPECT_TRUE(fs::exists(folder / "out/map" / step["file"].get<std::string>()));
+    }
+    EXPECT_GT(files, 4u);
+    EXPECT_EQ(report["steps"].back()["control_points"], 16);
+    EXPECT_EQ(report["steps"][0]["file"], "map_L0.geojson");
+    EXPECT_THAT(contentOf(folder / "sheet.svg"), HasSubstr(">1</text>"));
+}
+
+TEST(CurvesCommand, OneThreadAndFourWriteTheSameBytes) {
+    const Folder folder;
+    std::map<std::string, std::string> written[2];
+    for (int i = 0; i < 2; ++i) {
+        const fs::path out = folder / (i ? "four/map" : "one/map");
+        succeed({"curves", kKeys, "-o", out.string(), "--invert", "--threads", i ? "4" : "1"});
+        for (const auto& entry : fs::directory_iterator(out))
+            written[i][entry.path().filename().string()] = contentOf(entry.path());
+    }
+    EXPECT_EQ(written[0], written[1]);
+    EXPECT_GT(written[0].size(), 4u);
+}
+
+TEST(CurvesCommand, EveryFormatAndSmoothCurves) {
+    for (const char* format : {"svg", "geojson", "png", "txt"}) {
+        const Folder folder;
+        const Result result =
+            isowave(curves(kKeys, folder, {"--invert", "--format", format, "--levels", "0..1"}));
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_TRUE(fs::exists(folder / ("out/map/map_L1." + std::string(format))));
+        EXPECT_FALSE(fs::exists(folder / ("out/map/map_L2." + std::string(format))));
+    }
+    const Folder folder;
+    ASSERT_EQ(isowave(curves(kKeys, folder, {"--smooth", "--tolerance", "0.05"})).exitCode, 0);
+    EXPECT_THAT(contentOf(folder / "out/map/map_L0.svg"), HasSubstr("C"));
+}
+
+struct Bad {
+    std::string name, content;
+    Arguments more;
+    int exitCode;
+    std::string says;
+};
+
+TEST(CurvesCommand, BadInputGivesOneLineItsExitCodeAndNoFiles) {
+    const std::vector<Bad> all = {
+        {"a.png", "no picture", {}, 3, "neither PNG"},
+        {"a.png", "", {}, 3, "is empty"},
+        {"a.pgm", "P5\n0 0\n255\n", {}, 3, "0 x 0 pixels"},
+        {"a.pgm", "P2 2 2 255 5 5 5 5", {}, 3, "every pixel is 5"},
+        {"a.pgm", "P2 2 2 255 5 5 5 6", {"--iso", "200"}, 3, "from 5 to 6"},
+        {"a.pgm", "P2 2 2 255 5 5", {}, 3, "truncated"},
+        {"a.geojson",
+         "{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[1e300,1],[2,2]]]}",
+         {},
+         3,
+         "polygon 0, ring 0"},
+        {"a.geojson", "{\"type\":\"LineString\",\"coordinates\":[[0,0],[1,1]]}", {}, 3, "no polygon"},
+        {"a.txt", "0 0\n1 x\n", {}, 3, "line 2"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--levels", "90..95"}, 3, "ends at level"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--pixels", "0"}, 2, "--pixels"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--smooth", "--format", "geojson"}, 2, "--smooth"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--format", "stl"}, 2, "--format"},
+    };
+    for (const Bad& bad : all) {
+        const Folder folder;
+        std::ofstream(folder / bad.name, std::ios::binary) << bad.content;
+        const auto before = folder.snapshot();
+        const Result result = isowave(curves((folder / bad.name).string(), folder, bad.more));
+        EXPECT_EQ(result.exitCode, bad.exitCode) << bad.name << ": " << bad.content;
+        EXPECT_THAT(result.err, HasSubstr(bad.says));
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        EXPECT_EQ(folder.snapshot(), before) << bad.says;
+    }
+    const Folder folder;
+    EXPECT_EQ(isowave(curves((folder / "none.png").string(), folder)).exitCode, 3);
+}
+
+}  // namespace
+}  // namespace isowave::tools_test
