@@ -42,7 +42,7 @@ TEST(Filters, BesideASideHoldThePrintedNumbers) {
     EXPECT_THAT(succeed({"filters", "butterfly-3", "--boundary"}).out,
                 HasSubstr("33 taps, squared norm 0.67876505"));
     EXPECT_THAT(succeed({"filters", "cubic-7", "--boundary"}).out,
-                HasSubstr("1/139 x  -49  98  [135] -60   15"));
+                HasSubstr("1/139 x  -49   98  [135]  -60   15"));
 }
 
 TEST(CurveLevels, OfACoastAreWrittenAndComeBack) {
