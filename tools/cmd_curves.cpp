@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "curves2d/draw.h"
 #include "curves2d/ladder.h"
@@ -196,6 +197,9 @@ Json reportOf(const Settings& settings, const curves2d::Input& input, const Scri
 int runCurves(const Settings& settings, Console& console) {
     refuseContradictions(settings);
     OutputFolder out(*settings.output);
+    const bool toStdout = settings.jsonFile == "-";
+    std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
+    if (settings.jsonFile && !toStdout) copy.emplace(*settings.jsonFile);
     std::optional<tbb::global_control> limit;
     if (settings.threads)
         limit.emplace(tbb::global_control::max_allowed_parallelism,
@@ -225,13 +229,15 @@ int runCurves(const Settings& settings, Console& console) {
         scribe.writeSheetTo(*settings.sheet);
         sheet.commit();
     }
+    if (copy) writeJson(*copy, report);
     out.commit();
-    if (settings.jsonFile) writeJson(*settings.jsonFile, report);
+    if (copy) copy->commit();
+    if (toStdout) console.print(textOf(report));
     if (settings.table) console.print(scribe.table().text());
     if (settings.smooth)
         console.say(fmt::format("the smooth curves stay within {} pixels of the zero set",
                                 shortNumber(scribe.smoothDeviation())));
-    if (settings.jsonFile != "-")
+    if (!toStdout)
         console.print(fmt::format(
             "{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n", out.folder().string(),
             input.kind, grouped(ladder.controlPoints), grouped(ladder.coefficients),
