@@ -152,7 +152,7 @@ Image imageOf(const Header& header) {
     Image image;
     image.size = header.size;
     for (int a = 0; a < 3; ++a) {
-        const openvdb::Vec3d step = header.axis[a] * header.spacing[a];
+        const openvdb::Vec3d step = header.axis[a] * header.spacing[a] + openvdb::Vec3d(0);  // -0 + 0 = 0
         image.indexToWorld.setRow(a, openvdb::Vec4d(step[0], step[1], step[2], 0));
     }
     image.indexToWorld.setRow(3, openvdb::Vec4d(header.origin[0], header.origin[1], header.origin[2], 1));

@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "volume/image_source.h"
+#include "volume/image_header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -31,8 +31,7 @@ void prepareGdcm() {
     gdcm::ImageHelper::SetForceRescaleInterceptSlope(true);
 }
 
-// ------------------------------------------------------------------------------------------------ pixels of
-// a file
+// ------------------------------------------------------------------------------------ pixels of a file
 
 ValueType typeOf(const std::string& file, const gdcm::PixelFormat& format) {
     switch (format.GetScalarType()) {
@@ -76,8 +75,8 @@ struct DicomImage {
 };
 
 // Throws InputError when GDCM cannot parse the file or its pixels are not single numbers.
+// REQUIRES: the file went through stacksOf().
 std::unique_ptr<DicomImage> openImage(const fs::path& path) {
-    prepareGdcm();
     const std::string name = path.string();
     auto result = std::make_unique<DicomImage>();
     result->reader.SetFileName(name.c_str());
@@ -138,67 +137,36 @@ void takePlane(const DicomImage& dicom, Header& header) {
     const double* cosines = dicom.image().GetDirectionCosines();
     const double* spacing = dicom.image().GetSpacing();
     const double* origin = dicom.image().GetOrigin();
-    header.axis[0] = Vec3d(cosines[0], cosines[1], cosines[2]);
-    header.axis[1] = Vec3d(cosines[3], cosines[4], cosines[5]);
-    header.axis[2] = header.axis[0].cross(header.axis[1]);
+    // Cosines are rounded to six digits or so; ITK makes them unit vectors again, and so do we.
+    const auto unit = [](const Vec3d& v) { return v.length() > 0 ? v / v.length() : v; };
+    header.axis[0] = unit(Vec3d(cosines[0], cosines[1], cosines[2]));
+    header.axis[1] = unit(Vec3d(cosines[3], cosines[4], cosines[5]));
+    header.axis[2] = unit(header.axis[0].cross(header.axis[1]));
     header.spacing = {spacing[0], spacing[1], spacing[2]};
     header.origin = Vec3d(origin[0], origin[1], origin[2]);
 }
 
 }  // namespace
 
-// ------------------------------------------------------------------------------------------------------- one
-// file
-
-namespace {
-
-class FramesSource : public VoxelSource {
-  public:
-    FramesSource(fs::path path, std::unique_ptr<DicomImage> dicom)
-        : path_(std::move(path)), dicom_(std::move(dicom)) {}
-    std::int64_t read(std::int64_t, std::int64_t, float* out) override {
-        return readPixels(path_, *dicom_, out);
-    }
-
-  private:
-    fs::path path_;
-    std::unique_ptr<DicomImage> dicom_;
-};
-
-}  // namespace
-
-SourcePtr openDicomFile(const fs::path& path, const ImageReadOptions&) {
-    auto dicom = openImage(path);
-    if (dicom->frames() == 1)
-        throw InputError(path.string(),
-                         fmt::format("is a 2D image ({} x {}); isowave lod needs a volume; give the folder "
-                                     "of its series",
-                                     dicom->columns(), dicom->rows()));
-    Header header;
-    takePlane(*dicom, header);
-    header.format = "DICOM frames";
-    const bool enhanced = dicom->reader.GetFile().GetDataSet().FindDataElement(gdcm::Tag(0x5200, 0x9230));
-    if (enhanced)
-        header.warnings.push_back(
-            "the places of the frames are taken from the first two; frames out of order go unseen");
-    auto source = std::make_unique<FramesSource>(path, std::move(dicom));
-    source->header = header;
-    source->slicesPerRead = header.size[2];
-    return source;
-}
-
-// ------------------------------------------------------------------------------------------------ a folder
-// of slices
+// ---------------------------------------------------------------------------------- a folder of slices
 
 namespace {
 
 struct Slice {
     fs::path path;
     std::string uid, description;
+    std::string problem;  // why its pixels cannot be used; empty when they can
     std::int64_t rows = 0, columns = 0, frames = 1, instance = 0;
-    std::optional<Vec3d> position;     // ImagePositionPatient: the centre of the first pixel
-    std::optional<Vec3d> row, column;  // ImageOrientationPatient
-    double thickness = 0;              // SpacingBetweenSlices, else SliceThickness, else 0
+    std::optional<Vec3d> position;      // ImagePositionPatient: the centre of the first pixel
+    std::optional<Vec3d> row, column;   // ImageOrientationPatient
+    double thickness = 0, between = 0;  // SliceThickness; SpacingBetweenSlices; 0 where not said
+
+    // Slices that say nothing of their places: their distance is all there is. One slice alone: its
+    // thickness, for some scanners write the gap where the distance belongs.
+    double height(bool alone) const {
+        const double first = alone ? thickness : between, second = alone ? between : thickness;
+        return first > 0 ? first : second;
+    }
 
     bool placed() const { return position && row && column; }
     bool fits(const Slice& other) const {
@@ -215,7 +183,9 @@ using Stack = std::vector<Slice>;
 
 const gdcm::Tag kSeries(0x0020, 0x000E), kDescription(0x0008, 0x103E), kInstance(0x0020, 0x0013),
     kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037), kRows(0x0028, 0x0010), kColumns(0x0028, 0x0011),
-    kFrames(0x0028, 0x0008), kThickness(0x0018, 0x0050), kBetween(0x0018, 0x0088);
+    kFrames(0x0028, 0x0008), kThickness(0x0018, 0x0050), kBetween(0x0018, 0x0088), kSamples(0x0028, 0x0002),
+    kAllocated(0x0028, 0x0100), kStored(0x0028, 0x0101), kHighBit(0x0028, 0x0102),
+    kRepresentation(0x0028, 0x0103);
 
 std::vector<double> numbersOf(const std::string& text) {  // "1.5\\-2\\3"
     std::vector<double> result;
@@ -242,7 +212,21 @@ Slice sliceOf(const gdcm::Scanner& scanner, const fs::path& path) {
         const auto values = numbersOf(text(tag));
         return values.empty() ? otherwise : values[0];
     };
+    // The pixel format, where GDCM asserts rather than looks.
+    const double samples = number(kSamples, 1), allocated = number(kAllocated, 16),
+                 storedBits = number(kStored, allocated), highBit = number(kHighBit, storedBits - 1),
+                 sign = number(kRepresentation, 0);
     Slice slice;
+    if (samples != 1)
+        slice.problem =
+            fmt::format("holds colours ({} samples a pixel); expected one number a voxel", samples);
+    else if ((allocated != 8 && allocated != 12 && allocated != 16 && allocated != 32 && allocated != 64) ||
+             storedBits < 1 || storedBits > allocated || highBit < storedBits - 1 || highBit >= allocated ||
+             (sign != 0 && sign != 1))
+        slice.problem = fmt::format(
+            "its pixels are said to have {} bits, of which {} are used up to bit {}; expected "
+            "8, 12, 16, 32 or 64",
+            allocated, storedBits, highBit);
     slice.path = path;
     slice.uid = text(kSeries);
     slice.description = oneLine(text(kDescription));
@@ -250,7 +234,8 @@ Slice sliceOf(const gdcm::Scanner& scanner, const fs::path& path) {
     slice.columns = static_cast<std::int64_t>(number(kColumns, 0));
     slice.frames = static_cast<std::int64_t>(number(kFrames, 1));
     slice.instance = static_cast<std::int64_t>(number(kInstance, 0));
-    slice.thickness = number(kBetween, number(kThickness, 0));
+    slice.thickness = number(kThickness, 0);
+    slice.between = number(kBetween, 0);
     if (const auto p = numbersOf(text(kPosition)); p.size() == 3) slice.position = Vec3d(p[0], p[1], p[2]);
     if (const auto o = numbersOf(text(kOrientation)); o.size() == 6) {
         slice.row = Vec3d(o[0], o[1], o[2]);
@@ -261,9 +246,14 @@ Slice sliceOf(const gdcm::Scanner& scanner, const fs::path& path) {
 
 // Slices of one series, size and orientation, in the order of the file names.
 std::vector<Stack> stacksOf(const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) {
+        if (fs::file_size(file) == 0) throw InputError(file.string(), "is empty; expected a DICOM slice");
+        checkDicom(file);
+    }
     gdcm::Scanner scanner;
-    for (const gdcm::Tag& tag : {kSeries, kDescription, kInstance, kPosition, kOrientation, kRows, kColumns,
-                                 kFrames, kThickness, kBetween})
+    for (const gdcm::Tag& tag :
+         {kSeries, kDescription, kInstance, kPosition, kOrientation, kRows, kColumns, kFrames, kThickness,
+          kBetween, kSamples, kAllocated, kStored, kHighBit, kRepresentation})
         scanner.AddTag(tag);
     gdcm::Directory::FilenamesType names;
     for (const fs::path& file : files) names.push_back(file.string());
@@ -271,7 +261,6 @@ std::vector<Stack> stacksOf(const std::vector<fs::path>& files) {
 
     std::vector<Stack> stacks;
     for (const fs::path& file : files) {
-        if (fs::file_size(file) == 0) throw InputError(file.string(), "is empty; expected a DICOM slice");
         if (!scanner.IsKey(file.c_str()))
             throw InputError(file.string(),
                              "is not a DICOM file that can be read; it is truncated or damaged");
@@ -285,6 +274,11 @@ std::vector<Stack> stacksOf(const std::vector<fs::path>& files) {
             stack->push_back(std::move(slice));
     }
     return stacks;
+}
+
+void requireGrey(const Stack& stack) {
+    for (const Slice& slice : stack)
+        if (!slice.problem.empty()) throw InputError(slice.path.string(), slice.problem);
 }
 
 std::string describe(const Stack& stack) {
@@ -328,8 +322,7 @@ Stack pick(const std::string& folder, std::vector<Stack> stacks, const std::opti
                                       : "give one by its UID or a part of it (--series)"));
 }
 
-// ------------------------------------------------------------------------------------------ where the slices
-// lie
+// -------------------------------------------------------------------------------- where the slices lie
 
 // Sorts the stack along its normal and puts its third axis and origin into the header.
 // Throws InputError for two slices at one place and for a gap.
@@ -340,7 +333,7 @@ void placeStack(const std::string& folder, Stack& stack, Header& header) {
                      [&](const Slice& a, const Slice& b) { return height(a) < height(b); });
     header.origin = *stack[0].position;
     if (stack.size() == 1) {
-        header.spacing[2] = stack[0].thickness;
+        header.spacing[2] = stack[0].height(true);
         return;
     }
     std::vector<double> gaps;
@@ -373,8 +366,11 @@ void placeStack(const std::string& folder, Stack& stack, Header& header) {
         (*stack.back().position - *stack.front().position) / static_cast<double>(stack.size() - 1);
     header.spacing[2] = step.length();
     header.axis[2] = step.unit();
+    // Positions are rounded, often to 0.1 mm; a lean below half a pixel over the whole stack is not worth a
+    // word.
+    const double drift = (step - normal * step.dot(normal)).length() * static_cast<double>(stack.size() - 1);
     const double tilt = std::acos(std::clamp(header.axis[2].dot(normal), -1.0, 1.0)) * 180 / M_PI;
-    if (tilt > 0.1)
+    if (drift > 0.5 * header.spacing[0])
         header.warnings.push_back(
             fmt::format("the gantry is tilted by {:.2f} degrees; the voxels are kept so", tilt));
 }
@@ -383,7 +379,7 @@ void placeStack(const std::string& folder, Stack& stack, Header& header) {
 void numberStack(Stack& stack, Header& header) {
     std::stable_sort(stack.begin(), stack.end(),
                      [](const Slice& a, const Slice& b) { return a.instance < b.instance; });
-    header.spacing[2] = stack[0].thickness;
+    header.spacing[2] = stack[0].height(stack.size() == 1);
     header.warnings.push_back("the slices say nothing of their places; they are stacked by instance number");
 }
 
@@ -415,6 +411,7 @@ SourcePtr openDicomFolder(const fs::path& folder, const std::vector<fs::path>& f
                           const ImageReadOptions& options) {
     prepareGdcm();
     Stack stack = pick(folder.string(), stacksOf(files), options.series);
+    requireGrey(stack);
     if (stack[0].frames > 1) {
         if (stack.size() == 1) return openDicomFile(stack[0].path, options);
         throw InputError(folder.string(),
@@ -435,6 +432,49 @@ SourcePtr openDicomFolder(const fs::path& folder, const std::vector<fs::path>& f
     }
     auto source = std::make_unique<SeriesSource>(std::move(stack));
     source->header = header;
+    return source;
+}
+
+// -------------------------------------------------------------------------------------------- one file
+
+namespace {
+
+class FramesSource : public VoxelSource {
+  public:
+    FramesSource(fs::path path, std::unique_ptr<DicomImage> dicom)
+        : path_(std::move(path)), dicom_(std::move(dicom)) {}
+    std::int64_t read(std::int64_t, std::int64_t, float* out) override {
+        return readPixels(path_, *dicom_, out);
+    }
+
+  private:
+    fs::path path_;
+    std::unique_ptr<DicomImage> dicom_;
+};
+
+}  // namespace
+
+SourcePtr openDicomFile(const fs::path& path, const ImageReadOptions&) {
+    prepareGdcm();
+    const std::vector<Stack> stacks = stacksOf({path});
+    if (stacks.empty()) throw InputError(path.string(), "is a DICOM file without an image");
+    requireGrey(stacks[0]);
+    auto dicom = openImage(path);
+    if (dicom->frames() == 1)
+        throw InputError(path.string(),
+                         fmt::format("is a 2D image ({} x {}); isowave lod needs a volume; give the folder "
+                                     "of its series",
+                                     dicom->columns(), dicom->rows()));
+    Header header;
+    takePlane(*dicom, header);
+    header.format = "DICOM frames";
+    const bool enhanced = dicom->reader.GetFile().GetDataSet().FindDataElement(gdcm::Tag(0x5200, 0x9230));
+    if (enhanced)
+        header.warnings.push_back(
+            "the places of the frames are taken from the first two; frames out of order go unseen");
+    auto source = std::make_unique<FramesSource>(path, std::move(dicom));
+    source->header = header;
+    source->slicesPerRead = header.size[2];
     return source;
 }
 

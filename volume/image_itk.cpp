@@ -1,5 +1,6 @@
 // Files that ITK's readers know: NRRD, MetaImage, NIfTI, TIFF, PNG. One reader is made by name; ITK's
 // factories, which are global and load plugins, stay out of it.
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
@@ -8,9 +9,10 @@
 #include <itkTIFFImageIO.h>
 
 #include <algorithm>
+#include <cstdarg>
 
 #include "base/error.h"
-#include "volume/image_source.h"
+#include "volume/image_header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -115,9 +117,19 @@ void takeHeader(const fs::path& path, const itk::ImageIOBase& io, Header& header
                      fmt::format("is a 2D image ({} x {}); isowave lod needs a volume{}", x, y, remedy));
 }
 
-itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
-    // MetaIO, NrrdIO and libtiff warn through ITK's window; what is wrong is said once, in the exception.
+// What is wrong is said once, in an exception. ITK itself can be told so; the libtiff that it brings along
+// prints a line for every private tag, and its switch, renamed by ITK, is in no header.
+void silence() {
     itk::Object::SetGlobalWarningDisplay(false);
+    using Handler = void (*)(const char*, const char*, std::va_list);
+    using Setter = Handler (*)(Handler);
+    for (const char* name : {"itk_TIFFSetWarningHandler", "itk_TIFFSetErrorHandler"})
+        if (void* symbol = ::dlsym(RTLD_DEFAULT, name)) reinterpret_cast<Setter>(symbol)(nullptr);
+}
+
+itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
+    static const bool silent = (silence(), true);
+    (void)silent;
     std::string name = path.filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -174,6 +186,8 @@ HeaderFacts factsOf(const fs::path& path, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return checkNrrd(path);
     if (dynamic_cast<const itk::MetaImageIO*>(&io)) return checkMetaImage(path);
     if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return checkNifti(path);
+    if (dynamic_cast<const itk::TIFFImageIO*>(&io)) checkTiff(path);
+    if (dynamic_cast<const itk::PNGImageIO*>(&io)) checkPng(path);
     return {};
 }
 
@@ -219,8 +233,7 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     return source;
 }
 
-// ---------------------------------------------------------------------------------------------- a folder of
-// slices
+// ---------------------------------------------------------------------------------- a folder of slices
 
 namespace {
 
@@ -248,6 +261,7 @@ class SlicesSource : public VoxelSource {
     itk::ImageIOBase::Pointer openSlice(const fs::path& path) const {
         if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
         const itk::ImageIOBase::Pointer io = readerFor(path);
+        factsOf(path, *io);
         io->ReadImageInformation();
         Header slice;
         takeHeader(path, *io, slice);
@@ -274,6 +288,7 @@ SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& sl
     auto source = std::make_unique<SlicesSource>(slices);
     Header& header = source->header;
     const itk::ImageIOBase::Pointer io = readerFor(first);
+    factsOf(first, *io);
     reading(first, [&] { io->ReadImageInformation(); });
     takeHeader(first, *io, header);
     if (header.size[2] > 1) {  // pages

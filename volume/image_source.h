@@ -66,15 +66,13 @@ SourcePtr openDicomFile(const std::filesystem::path& path,
 SourcePtr openDicomFolder(const std::filesystem::path& folder,
                           const std::vector<std::filesystem::path>& files, const ImageReadOptions& options);
 
-// ----------------------------------------------------------------------------------------------
-// image_convert.cpp
+// ----------------------------------------------------------------------------------- image_convert.cpp
 
 // count values of `type` at `in` to float; swap: the bytes of each are in the other order. Returns how many
 // integers changed in value.
 std::int64_t convert(ValueType type, const void* in, std::int64_t count, bool swap, float* out);
 
-// ------------------------------------------------------------------------------------------------
-// image_check.cpp
+// ------------------------------------------------------------------------------------- image_check.cpp
 
 // "512 x 512 x 300"; "157 MB"
 std::string sizeText(const std::array<std::int64_t, 3>& size);
@@ -97,22 +95,5 @@ void checkFinite(const std::string& file, const Image& image);
 
 // One line of printable text, at most 200 characters, of whatever a library said.
 std::string oneLine(std::string text);
-
-// -----------------------------------------------------------------------------------------------
-// image_header.cpp
-
-// What ITK's readers hide, found in the header itself: sizes whose product overflows, data that the file does
-// not hold, spacing <= 0 (ITK takes the absolute value or throws), a missing data file. Throws InputError.
-struct HeaderFacts {
-    std::vector<std::int64_t>
-        size;  // of every axis that the file states, the range axis of a vector image too
-    std::optional<ValueType> storedType;
-    std::optional<bool> integral;
-    bool onePiece = true;                             // cannot be read a few slices at a time
-    std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite
-};
-HeaderFacts checkNrrd(const std::filesystem::path& path);
-HeaderFacts checkMetaImage(const std::filesystem::path& path);
-HeaderFacts checkNifti(const std::filesystem::path& path);
 
 }  // namespace isowave::imageio

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 namespace isowave::test {
 
@@ -48,10 +49,10 @@ typename Image::Pointer readItk(const std::filesystem::path& path) {
     return reader->GetOutput();
 }
 
-// Every voxel different as far as the type goes, and not symmetric in x, y, z.
+// -125..125 (0..250 without a sign), not symmetric in x, y, z.
 template <class T>
 T patternAt(long x, long y, long z) {
-    return static_cast<T>((x * 7 + y * 31 + z * 101) % 251);
+    return static_cast<T>((x * 7 + y * 31 + z * 101) % 251 - (std::is_signed_v<T> ? 125 : 0));
 }
 
 template <class T, unsigned D = 3>

@@ -1,0 +1,64 @@
+// Inside volume/: what ITK's readers hide, looked up in the headers themselves before ITK sees the file.
+//
+// NrrdIO, MetaIO, libtiff and the NIfTI library fill what is missing with zeros, take absolute values,
+// allocate whatever a header asks for, abort, or print to the terminal. Here each header is read just far
+// enough to know how many bytes of voxels it promises and whether the file holds them. What is not understood
+// is left to ITK.
+#pragma once
+
+#include "volume/image_source.h"
+
+namespace isowave::imageio {
+
+struct HeaderFacts {
+    std::vector<std::int64_t>
+        size;  // of every axis that the file states, the range axis of a vector image too
+    std::optional<ValueType> storedType;
+    std::optional<bool> integral;
+    bool onePiece = true;                             // cannot be read a few slices at a time
+    std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite
+};
+
+// Each throws InputError for sizes whose product overflows, voxels that the file does not hold, a data file
+// that is missing, axes without length or that hold infinities.
+HeaderFacts checkNrrd(const std::filesystem::path& path);       // image_nrrd.cpp
+HeaderFacts checkMetaImage(const std::filesystem::path& path);  // image_metaimage.cpp
+HeaderFacts checkNifti(const std::filesystem::path& path);      // image_nifti.cpp
+void checkTiff(const std::filesystem::path& path);              // image_tiff.cpp
+void checkPng(const std::filesystem::path& path);
+void checkDicom(const std::filesystem::path& path);  // image_dicom_check.cpp
+
+// What they share, in image_header.cpp.
+
+std::string trimmed(const std::string& text);
+std::string lower(std::string text);
+
+// The whole numbers of a line; throws InputError when there is anything else in it.
+std::vector<std::int64_t> wholeNumbers(const std::string& file, const std::string& key,
+                                       const std::string& text);
+
+// Numbers as strtod takes them (nan and inf too); anything else ends the list.
+std::vector<double> numbers(const std::string& text);
+
+// The first megabyte: headers are a few kB.
+std::string headerFileText(const std::filesystem::path& path);
+
+std::string sizesText(const std::vector<std::int64_t>& size);
+
+// The first three spacings, when one of them is not a positive number. nanIsUnknown: nan means that the file
+// does not say.
+std::optional<std::array<double, 3>> badAmong(const std::vector<double>& spacing, bool nanIsUnknown);
+
+// Throws InputError unless the file holds `needed` bytes from byte `start` on. promise: "'sizes' says 4 x 3 x
+// 2".
+void checkPlain(const std::filesystem::path& path, std::int64_t start, std::int64_t needed,
+                const std::string& promise);
+
+// The same for a zlib or gzip stream that begins there; its end and checksum must be there too.
+void checkDeflated(const std::filesystem::path& path, std::int64_t start, std::int64_t needed,
+                   const std::string& promise);
+
+// Throws InputError unless `data`, which `header` names, is a file.
+void requireFile(const std::filesystem::path& header, const std::filesystem::path& data);
+
+}  // namespace isowave::imageio
