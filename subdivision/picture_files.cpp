@@ -93,7 +93,7 @@ Grid readPictureOrGrid(const std::filesystem::path& path) {
 }
 
 std::string pngBytes(const Grid& grid, double black, double white) {
-    const double scale = white > black ? 255 / (white - black) : 0;
+    const double scale = white != black ? 255 / (white - black) : 0;  // black may be the larger: a negative
     std::vector<std::uint8_t> grey(grid.rows * grid.columns);
     for (std::size_t k = 0; k < grey.size(); ++k) {
         const double value = grid.values[k * grid.channels];

@@ -12,7 +12,7 @@ namespace isowave::subdivision {
 // Throws InputError when the file cannot be read, or has fewer than 2 rows or columns.
 Grid readPictureOrGrid(const std::filesystem::path& path);
 
-// 8-bit grey, values from `black` to `white` of channel 0; what is not finite becomes white.
+// 8-bit grey, values from `black` to `white` of channel 0 (either may be the larger); what is not finite becomes white.
 std::string pngBytes(const Grid& grid, double black, double white);
 // As a file, which appears whole or not at all. Throws OperationError when it cannot be written.
 void writePng(const std::filesystem::path& path, const Grid& grid, double black, double white);

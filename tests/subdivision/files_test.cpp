@@ -242,6 +242,9 @@ TEST(Pictures, WrittenAreReadBack) {
     EXPECT_EQ(again.rows, 3u);
     EXPECT_EQ(again.columns, 5u);
     EXPECT_EQ(again.values, grid.values);
+    writePng(path, grid, 238, 0);  // a negative: what is larger is darker
+    EXPECT_EQ(readPictureOrGrid(path).at(0, 0), 255);
+    EXPECT_EQ(readPictureOrGrid(path).at(2, 4), 0);
     std::filesystem::resize_file(path, 40);
     EXPECT_THAT(complaint([&] { readPictureOrGrid(path); }), HasSubstr("a.png: cannot be read as a picture"));
     EXPECT_THAT(complaint([&] { readPictureOrGrid(fresh("none.tif")); }), HasSubstr("cannot be opened"));
@@ -348,6 +351,11 @@ TEST(ReliefReport, HoldsPicturesAndNumbersOfEveryLevel) {
         EXPECT_TRUE(report.files.contains(name)) << name;
     }
     EXPECT_FALSE(report.files.contains("details_2.png"));
+    std::ofstream(fresh("details.png"), std::ios::binary) << report.files.at("details_0.png");
+    const Grid details = readPictureOrGrid(fresh("details.png"));
+    EXPECT_EQ(*std::max_element(details.values.begin(), details.values.end()),
+              255);  // vertex nodes hold no detail
+    EXPECT_EQ(*std::min_element(details.values.begin(), details.values.end()), 0);
     EXPECT_THAT(text(report), HasSubstr("hexagon 12"));
     EXPECT_EQ(nlohmann::json::parse(json(report))["levels"].size(), 3u);
 }
