@@ -5,12 +5,13 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "subdivision/triangle_step.h"
 
 namespace isowave::subdivision {
 namespace {
 
 const std::vector<MeshScheme>& table() {
-    static const std::vector<MeshScheme> kSchemes{};
+    static const std::vector<MeshScheme> kSchemes{loopScheme(), butterflyScheme()};
     return kSchemes;
 }
 

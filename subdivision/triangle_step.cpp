@@ -1,0 +1,480 @@
+#include "subdivision/triangle_step.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "subdivision/construct.h"
+#include "subdivision/curve_schemes.h"
+#include "subdivision/triangle_coarsen.h"
+
+namespace isowave::subdivision {
+
+namespace {
+
+constexpr int kRegularValence = 6, kRings = 3;
+// Along the boundary A reads this many nodes either way: 7 taps of the cubic B-spline, 9 of the four-point curve.
+constexpr int kStepsLoop = 3, kStepsButterfly = 4;
+// The four-point rule looks no farther than this many coarse vertices to either end of an edge.
+constexpr int kFarOnBoundary = 3;
+// Columns of P, cut to a window, are dependent exactly or not at all; their entries are of size 1.
+constexpr double kDependent = 1e-12;
+
+// s_j of the header.
+double zorinWeight(int j, int valence) {
+    if (valence == 3) return j == 0 ? 5.0 / 12 : -1.0 / 12;
+    if (valence == 4) return j == 0 ? 3.0 / 8 : j == 2 ? -1.0 / 8 : 0;
+    const double turn = 2 * std::numbers::pi * j / valence;
+    return (0.25 + std::cos(turn) + std::cos(2 * turn) / 2) / valence;
+}
+
+Vec3 sum(const Taps& row, std::span<const Vec3> values) {
+    Vec3 result;
+    for (const auto& [node, weight] : row) result += weight * values[node];
+    return result;
+}
+
+template <class Values, class Value>
+std::size_t placeIn(const Values& values, const Value& value) {
+    return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
+}
+
+void addOnce(std::vector<Index>& nodes, Index node) {
+    if (placeIn(nodes, node) == nodes.size()) nodes.push_back(node);
+}
+
+// The exact row of A by ring: centre; ring 1; vertex and edge nodes of ring 2; of ring 3 those straight ahead of the
+// centre's edges and those beside. The lattice's symmetries make them equal within a group.
+struct RegularRow {
+    double centre, ring1, vertex2, edge2, ahead3, beside3;
+};
+
+RegularRow exactRow(const char* mask) {
+    const auto row = leastNormA(namedMask(mask), kRings);
+    assert(row);
+    const auto at = [&](int x, int y) { return toDouble((*row)[{x, y}]); };
+    return {at(0, 0), at(1, 0), at(2, 0), at(1, 1), at(3, 0), at(2, 1)};
+}
+
+const RegularRow& regularRowOf(TriangleStep::Family family) {
+    static const RegularRow loop = exactRow("loop"), butterfly = exactRow("butterfly");
+    return family == TriangleStep::Family::Loop ? loop : butterfly;
+}
+
+// Rows of least norm with AP = I on given windows. Places that look the same to P are solved for once.
+class LeastNormRows {
+  public:
+    explicit LeastNormRows(const TriangleStep& step) : step_(step) {}
+
+    Taps row(Index v, const std::vector<Index>& window) {
+        cut(window);
+        Taps some;
+        step_.rowOfA0(v, some);
+        key_.push_back(static_cast<double>(some.size()));
+        for (const auto& [node, weight] : some) {
+            key_.push_back(static_cast<double>(placeIn(window, node)));
+            key_.push_back(weight);
+        }
+        const auto [entry, isNew] = solutions_.try_emplace(key_);
+        if (isNew) entry->second = shortest(some, window);
+        Taps result;
+        for (std::size_t k = 0; k < window.size(); ++k) result.push_back({window[k], entry->second[k]});
+        return result;
+    }
+    std::size_t different() const { return solutions_.size(); }
+
+  private:
+    // Writes P on the window into p_, its coarse vertices numbered as they come, and both into key_.
+    void cut(const std::vector<Index>& window) {
+        key_.clear();
+        p_.clear();
+        touched_.clear();
+        Taps taps;
+        for (const Index node : window) {
+            step_.rowOfP(node, taps);
+            key_.push_back(static_cast<double>(taps.size()));
+            for (auto& [coarse, weight] : taps) {
+                addOnce(touched_, coarse);
+                coarse = static_cast<Index>(placeIn(touched_, coarse));
+                key_.push_back(coarse);
+                key_.push_back(weight);
+            }
+            p_.push_back(taps);
+        }
+    }
+
+    // The part of A0's row in the span of P's columns: the shortest x with P' x = P' A0' = (1 at v, 0 else).
+    std::vector<double> shortest(const Taps& some, const std::vector<Index>& window) const {
+        const auto size = static_cast<Eigen::Index>(window.size());
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+        for (const auto& [node, weight] : some) x[static_cast<Eigen::Index>(placeIn(window, node))] += weight;
+        Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(touched_.size()));
+        for (Eigen::Index k = 0; k < size; ++k) {
+            for (const auto& [coarse, weight] : p_[static_cast<std::size_t>(k)])
+                p(k, static_cast<Eigen::Index>(coarse)) += weight;
+        }
+        Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(p);
+        qr.setThreshold(kDependent);
+        x.applyOnTheLeft(qr.householderQ().adjoint());
+        x.tail(size - qr.rank()).setZero();
+        x.applyOnTheLeft(qr.householderQ());
+        return {x.data(), x.data() + size};
+    }
+
+    const TriangleStep& step_;
+    std::vector<double> key_;
+    std::vector<Taps> p_;
+    std::vector<Index> touched_;
+    std::map<std::vector<double>, std::vector<double>> solutions_;
+};
+
+}  // namespace
+
+struct TriangleStep::Irregular {
+    std::vector<Index> rowOf;  // of each coarse vertex: its row below; kNone where it is the exact one
+    std::vector<Taps> rows;
+    std::size_t different = 0;
+};
+
+double loopBeta(int n) {
+    const double inner = 3.0 / 8 + std::cos(2 * std::numbers::pi / n) / 4;
+    return (5.0 / 8 - inner * inner) / n;
+}
+
+TriangleStep::TriangleStep(Family family, Fit fit, const PolygonMesh& coarse)
+    : TriangleStep(family, fit, (requireTriangles(coarse), Adjacency(coarse)), coarse.pinned) {}
+
+TriangleStep::TriangleStep(Family family, Fit fit, Adjacency coarse, const std::vector<Index>& pinned)
+    : SubdivisionStep(coarse.vertices(), coarse.vertices() + coarse.edges()),
+      family_(family),
+      fit_(fit),
+      coarse_(std::move(coarse)),
+      pinned_(pinned),
+      place_(coarse_.vertices()),
+      valence_(coarse_.vertices()) {
+    for (Index v = 0; v < coarse_.vertices(); ++v) {
+        valence_[v] = static_cast<int>(coarse_.valence(v));
+        const bool single = coarse_.faceValence(v) == 1;
+        place_[v] = !coarse_.isBoundaryVertex(v) ? Place::Inside : single ? Place::Corner : Place::Boundary;
+    }
+    // Inside, Butterfly keeps every vertex.
+    for (const Index v : pinned_) {
+        if (family == Family::Loop || place(v) == Place::Boundary) place_[v] = Place::Corner;
+    }
+}
+
+// --- P
+// ------------------------------------------------------------------------------------------------------
+
+void TriangleStep::rowOfP(Index fine, Taps& row) const {
+    row.clear();
+    if (fine < coarse_.vertices()) return vertexRowOfP(fine, row);
+    const Index h = coarse_.edgeCorner(fine - static_cast<Index>(coarse_.vertices()));
+    if (coarse_.twin(h) == kNone) return boundaryEdge(h, row);
+    if (family_ == Family::Butterfly) return butterflyEdge(h, row);
+    row.push_back({coarse_.vertex(h), 3.0 / 8});
+    row.push_back({coarse_.target(h), 3.0 / 8});
+    row.push_back({apex(h), 1.0 / 8});
+    row.push_back({apex(coarse_.twin(h)), 1.0 / 8});
+}
+
+void TriangleStep::vertexRowOfP(Index v, Taps& row) const {
+    if (family_ == Family::Butterfly || place(v) == Place::Corner) {
+        row.push_back({v, 1});
+    } else if (place(v) == Place::Boundary) {
+        row.push_back({v, 3.0 / 4});
+        row.push_back({coarse_.target(boundaryAfter(v)), 1.0 / 8});
+        row.push_back({coarse_.vertex(boundaryBefore(v)), 1.0 / 8});
+    } else {
+        const double beta = loopBeta(valence_[v]);
+        row.push_back({v, 1 - valence_[v] * beta});
+        coarse_.around(v, [&](Index h) { row.push_back({coarse_.target(h), beta}); });
+    }
+}
+
+void TriangleStep::butterflyEdge(Index h, Taps& row) const {
+    const Index across = coarse_.twin(h);
+    const bool first = isIrregular(coarse_.vertex(h)), second = isIrregular(coarse_.target(h));
+    if (first || second) {
+        const double share = first && second ? 0.5 : 1;
+        if (first) addStencilAround(h, share, row);
+        if (second) addStencilAround(across, share, row);
+        return;
+    }
+    row.push_back({coarse_.vertex(h), 1.0 / 2});
+    row.push_back({coarse_.target(h), 1.0 / 2});
+    addWings(h, row);
+    addWings(across, row);
+}
+
+// 3/4 of the vertex from which h runs, and s_j of its neighbours, j counted from h.
+void TriangleStep::addStencilAround(Index h, double factor, Taps& row) const {
+    const Index centre = coarse_.vertex(h);
+    row.push_back({centre, factor * 3 / 4});
+    Index c = h;
+    for (int j = 0; j < valence_[centre]; ++j, c = coarse_.nextAround(c)) {
+        const double weight = zorinWeight(j, valence_[centre]);
+        if (weight != 0) row.push_back({coarse_.target(c), factor * weight});
+    }
+}
+
+// The vertex across from h in its triangle, and the two wings beyond that triangle's other sides.
+void TriangleStep::addWings(Index h, Taps& row) const {
+    row.push_back({apex(h), 1.0 / 8});
+    const auto addWing = [&](Index side, Index kept, Index turned) {
+        if (coarse_.twin(side) != kNone) {
+            row.push_back({apex(coarse_.twin(side)), -1.0 / 16});
+        } else {
+            row.push_back({kept, -1.0 / 16});
+            row.push_back({apex(h), -1.0 / 16});
+            row.push_back({turned, 1.0 / 16});
+        }
+    };
+    addWing(coarse_.next(h), coarse_.target(h), coarse_.vertex(h));
+    addWing(coarse_.prev(h), coarse_.vertex(h), coarse_.target(h));
+}
+
+void TriangleStep::boundaryEdge(Index h, Taps& row) const {
+    if (family_ == Family::Loop) {
+        row.push_back({coarse_.vertex(h), 1.0 / 2});
+        row.push_back({coarse_.target(h), 1.0 / 2});
+        return;
+    }
+    // The open curve of the vertices nearby, up to corners.
+    std::vector<Index> curve{coarse_.vertex(h), coarse_.target(h)};
+    for (int k = 0; k < kFarOnBoundary && place(curve.back()) != Place::Corner; ++k)
+        curve.push_back(coarse_.target(boundaryAfter(curve.back())));
+    int before = 0;
+    for (; before < kFarOnBoundary && place(curve.front()) != Place::Corner; ++before)
+        curve.insert(curve.begin(), coarse_.vertex(boundaryBefore(curve.front())));
+    for (const auto& [node, weight] : fourPointRow(static_cast<int>(curve.size()), 2 * before + 1))
+        row.push_back({curve[static_cast<std::size_t>(node.x)], toDouble(weight)});
+}
+
+// --- A
+// ------------------------------------------------------------------------------------------------------
+
+void TriangleStep::rowOfA0(Index v, Taps& row) const {
+    row.clear();
+    if (family_ == Family::Butterfly || place(v) == Place::Corner) {
+        row.push_back({v, 1});
+    } else if (place(v) == Place::Boundary) {
+        row.push_back({v, 2});
+        row.push_back({edgeNode(boundaryAfter(v)), -1.0 / 2});
+        row.push_back({edgeNode(boundaryBefore(v)), -1.0 / 2});
+    } else {
+        const double beta = loopBeta(valence_[v]), centre = 1 / (1 - 8.0 / 5 * valence_[v] * beta);
+        row.push_back({v, centre});
+        coarse_.around(v, [&](Index h) { row.push_back({edgeNode(h), -8.0 / 5 * beta * centre}); });
+    }
+}
+
+void TriangleStep::rowOfA(Index v, Taps& row) const {
+    if (fit_ == Fit::Trial || place(v) == Place::Corner) return rowOfA0(v, row);
+    const Index computed = irregular().rowOf[v];
+    if (computed == kNone) return regularRow(v, row);
+    row = irregular().rows[computed];
+}
+
+void TriangleStep::regularRow(Index v, Taps& row) const {
+    const RegularRow& a = regularRowOf(family_);
+    row.clear();
+    row.push_back({v, a.centre});
+    coarse_.around(v, [&](Index h) {
+        row.push_back({edgeNode(h), a.ring1});
+        row.push_back({coarse_.target(h), a.vertex2});
+        row.push_back({edgeNode(coarse_.next(h)), a.edge2});
+        // From the neighbour the edge back to v is number 0; 1 and 5 lie in ring 2, 2 to 4 in ring 3.
+        Index c = coarse_.nextAround(coarse_.twin(h));
+        for (int j = 2; j <= 4; ++j) {
+            c = coarse_.nextAround(c);
+            row.push_back({edgeNode(c), j == 3 ? a.ahead3 : a.beside3});
+        }
+    });
+}
+
+// Vertices whose window sees valence 6 only, inside: they themselves, and two rings around them.
+std::vector<char> TriangleStep::regularVertices() const {
+    std::vector<char> regular(coarse_.vertices());
+    for (Index v = 0; v < coarse_.vertices(); ++v)
+        regular[v] = place(v) == Place::Inside && valence_[v] == kRegularValence;
+    for (int ring = 0; ring < 2; ++ring) {
+        const auto before = regular;
+        for (Index h = 0; h < coarse_.corners(); ++h) {
+            if (!before[coarse_.target(h)]) regular[coarse_.vertex(h)] = 0;
+            if (!before[coarse_.vertex(h)]) regular[coarse_.target(h)] = 0;
+        }
+    }
+    return regular;
+}
+
+const TriangleStep::Irregular& TriangleStep::irregular() const {
+    std::call_once(once_, [&] {
+        auto result = std::make_shared<Irregular>();
+        result->rowOf.assign(coarse_.vertices(), kNone);
+        const auto regular = regularVertices();
+        LeastNormRows solver(*this);
+        for (Index v = 0; v < coarse_.vertices(); ++v) {
+            if (regular[v] || place(v) == Place::Corner) continue;
+            result->rowOf[v] = static_cast<Index>(result->rows.size());
+            result->rows.push_back(
+                solver.row(v, place(v) == Place::Boundary ? boundaryWindow(v) : ballWindow(v)));
+        }
+        result->different = solver.different();
+        irregular_ = std::move(result);
+    });
+    return *irregular_;
+}
+
+TriangleStep::Count TriangleStep::computedRows() const {
+    if (fit_ == Fit::Trial) return {0, 0};
+    return {irregular().rows.size(), irregular().different};
+}
+
+// The fine nodes within three rings: v, its neighbours, and all edges at these. REQUIRES: v lies inside.
+std::vector<Index> TriangleStep::ballWindow(Index v) const {
+    std::vector<Index> window{v};
+    const auto addEdgesAt = [&](Index first) {
+        Index h = first;
+        do {
+            addOnce(window, edgeNode(h));
+            addOnce(window, edgeNode(coarse_.prev(h)));
+            h = coarse_.nextAround(h);
+        } while (h != first && h != kNone);
+    };
+    addEdgesAt(coarse_.outgoing(v));
+    coarse_.around(v, [&](Index h) { addOnce(window, coarse_.target(h)); });
+    coarse_.around(v, [&](Index h) {
+        // From the edge back to v where that goes all round, so that equal places are written down equally.
+        const Index u = coarse_.target(h);
+        addEdgesAt(coarse_.isBoundaryVertex(u) ? coarse_.outgoing(u) : coarse_.twin(h));
+    });
+    return window;
+}
+
+// Steps of half an edge either way: first onto the edge, then onto its far end.
+std::vector<Index> TriangleStep::boundaryWindow(Index v) const {
+    const int steps = family_ == Family::Loop ? kStepsLoop : kStepsButterfly;
+    std::vector<Index> window{v};
+    for (const bool forwards : {true, false}) {
+        Index at = v;
+        for (int k = 0; k < steps && (at == v || place(at) != Place::Corner); k += 2) {
+            const Index h = forwards ? boundaryAfter(at) : boundaryBefore(at);
+            at = forwards ? coarse_.target(h) : coarse_.vertex(h);
+            addOnce(window, edgeNode(h));
+            if (k + 1 < steps) addOnce(window, at);
+        }
+    }
+    return window;
+}
+
+// The boundary's halfedge that leaves v, and the one that arrives.
+Index TriangleStep::boundaryAfter(Index v) const { return coarse_.outgoing(v); }
+Index TriangleStep::boundaryBefore(Index v) const {
+    Index last = kNone;
+    coarse_.around(v, [&](Index h) { last = h; });
+    return coarse_.prev(last);
+}
+
+// --- points
+// -------------------------------------------------------------------------------------------------
+
+PolygonMesh TriangleStep::refined() const {
+    PolygonMesh fine = refinedTriangles(coarse_);
+    fine.pinned = pinned_;
+    return fine;
+}
+
+std::vector<Vec3> TriangleStep::subdivide(std::span<const Vec3> coarse) const {
+    assert(coarse.size() == coarseSize());
+    std::vector<Vec3> fine(fineSize());
+    Taps row;
+    for (Index k = 0; k < fine.size(); ++k) {
+        rowOfP(k, row);
+        fine[k] = sum(row, coarse);
+    }
+    return fine;
+}
+
+SubdivisionStep::Parts TriangleStep::decompose(std::span<const Vec3> fine) const {
+    assert(fine.size() == fineSize());
+    Parts parts{std::vector<Vec3>(coarseSize()), std::vector<Vec3>(coarse_.edges())};
+    Taps row;
+    for (Index v = 0; v < coarseSize(); ++v) {
+        rowOfA0(v, row);
+        parts.coarse[v] = sum(row, fine);
+    }
+    for (Index e = 0; e < coarse_.edges(); ++e) {
+        const Index node = static_cast<Index>(coarseSize()) + e;
+        rowOfP(node, row);
+        parts.stored[e] = fine[node];
+        parts.stored[e] -= sum(row, parts.coarse);
+    }
+    if (fit_ == Fit::Trial) return parts;
+    for (Index v = 0; v < coarseSize(); ++v) {
+        rowOfA(v, row);
+        parts.coarse[v] = sum(row, fine);
+    }
+    return parts;
+}
+
+// g = Q0 d: at a vertex node what makes A0 g = 0. Butterfly's A0 reads nothing else, so 0.
+std::vector<Vec3> TriangleStep::allDetails(std::span<const Vec3>, std::span<const Vec3> stored) const {
+    assert(stored.size() == coarse_.edges());
+    std::vector<Vec3> g(coarseSize());
+    g.insert(g.end(), stored.begin(), stored.end());
+    if (family_ == Family::Butterfly) return g;
+    Taps row;
+    for (Index v = 0; v < coarseSize(); ++v) {
+        rowOfA0(v, row);
+        const double centre = row.front().weight;
+        g[v] = (-1 / centre) * sum(row, g);  // g[v] is still 0, and the others are edge nodes
+    }
+    return g;
+}
+
+std::vector<Vec3> TriangleStep::shift(std::span<const Vec3> allDetails) const {
+    assert(allDetails.size() == fineSize());
+    std::vector<Vec3> moved(coarseSize());
+    if (fit_ == Fit::Trial) return moved;  // A0 Q0 = 0
+    Taps row;
+    for (Index v = 0; v < coarseSize(); ++v) {
+        rowOfA(v, row);
+        moved[v] = sum(row, allDetails);
+    }
+    return moved;
+}
+
+// --- rows of the table
+// ------------------------------------------------------------------------------------------
+
+namespace {
+
+template <TriangleStep::Family family>
+std::unique_ptr<SubdivisionStep> makeStep(const PolygonMesh& coarse, std::string_view variant) {
+    return std::make_unique<TriangleStep>(
+        family, variant == "trial" ? TriangleStep::Fit::Trial : TriangleStep::Fit::Refined, coarse);
+}
+
+}  // namespace
+
+MeshScheme loopScheme() {
+    return {"loop",
+            "Loop's, of triangles: box splines where six meet",
+            {"refined", "trial"},
+            makeStep<TriangleStep::Family::Loop>,
+            recoverTriangles};
+}
+
+MeshScheme butterflyScheme() {
+    return {"butterfly",
+            "modified Butterfly, of triangles: goes through the points",
+            {"refined", "trial"},
+            makeStep<TriangleStep::Family::Butterfly>,
+            recoverTriangles};
+}
+
+}  // namespace isowave::subdivision
