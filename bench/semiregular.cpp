@@ -1,0 +1,209 @@
+// Makes a real surface semi-regular, so that its levels have real details: a coarse mesh of its own, refined and drawn
+// onto it level by level. The inputs of docs/subdivision_surfaces.md were made with it.
+//
+//     semiregular elephant.off elephant_tri.ply  --triangles 700 --levels 4                     for loop, butterfly
+//     semiregular elephant.off elephant_quad.ply --triangles 240 --levels 4 --scheme catmull-clark
+//
+// Passes: collapse -> (refine -> project -> relax) for each level -> measure.
+//   collapse  edge by edge to --triangles, keeping the topology (Lindstrom, Turk)
+//   refine    one step of the scheme; catmull-clark's first makes quads of the triangles
+//   project   every vertex to the nearest point of the surface
+//   relax     every vertex halfway to the mean of its neighbours, but only along the surface, which spreads them
+//             evenly and leaves tips where they are; then project again. Twice.
+//   measure   from the new vertices to the surface (rounding), from the surface's vertices to the new mesh, and faces
+//             whose normal points against the surface's
+// Nearest points know nothing of sheets: with too few triangles a thin ear is reached from its wrong side, which the
+// last number shows. The surface must be closed, since a boundary would relax away from itself.
+//
+// CGAL's Surface_mesh_simplification and AABB_tree are under the GPL: in this program only.
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "base/error.h"
+#include "subdivision/hierarchy.h"
+#include "subdivision/mesh_files.h"
+
+namespace {
+
+using namespace isowave::subdivision;
+using isowave::InputError;
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Point = Kernel::Point_3;
+using Surface = CGAL::Surface_mesh<Point>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Surface>>>;
+
+constexpr int kRelaxations = 2;
+
+Surface surfaceOf(const PolygonMesh& mesh) {
+    Surface surface;
+    for (const Vec3& p : mesh.points) surface.add_vertex({p.x, p.y, p.z});
+    for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+        const auto corners = mesh.face(f);
+        for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+            surface.add_face(Surface::Vertex_index(corners[0]), Surface::Vertex_index(corners[k]),
+                             Surface::Vertex_index(corners[k + 1]));
+        }
+    }
+    return surface;
+}
+
+PolygonMesh collapsed(Surface surface, std::size_t triangles) {
+    namespace Simplification = CGAL::Surface_mesh_simplification;
+    // Closed: 3 edges for every 2 triangles.
+    Simplification::edge_collapse(surface, Simplification::Count_stop_predicate<Surface>(3 * triangles / 2));
+    surface.collect_garbage();
+    PolygonMesh mesh;
+    for (const auto v : surface.vertices()) {
+        const Point& p = surface.point(v);
+        mesh.points.push_back({p.x(), p.y(), p.z()});
+    }
+    for (const auto f : surface.faces()) {
+        std::vector<Index> corners;
+        for (const auto v : surface.vertices_around_face(surface.halfedge(f))) corners.push_back(v);
+        mesh.addFace(corners);
+    }
+    return mesh;
+}
+
+Vec3 normal(const Surface& surface, Surface::Face_index f) {
+    std::vector<Vec3> p;
+    for (const auto v : surface.vertices_around_face(surface.halfedge(f)))
+        p.push_back({surface.point(v).x(), surface.point(v).y(), surface.point(v).z()});
+    return cross(p[1] - p[0], p[2] - p[0]);
+}
+
+Vec3 nearest(const Tree& tree, const Vec3& p) {
+    const Point q = tree.closest_point({p.x, p.y, p.z});
+    return {q.x(), q.y(), q.z()};
+}
+
+// Moves the points onto the surface and returns its unit normals there.
+std::vector<Vec3> project(std::vector<Vec3>& points, const Surface& surface, const Tree& tree) {
+    std::vector<Vec3> normals;
+    for (Vec3& p : points) {
+        const auto [at, face] = tree.closest_point_and_primitive({p.x, p.y, p.z});
+        p = {at.x(), at.y(), at.z()};
+        const Vec3 n = normal(surface, face);
+        normals.push_back(length(n) > 0 ? (1 / length(n)) * n : n);
+    }
+    return normals;
+}
+
+void relax(PolygonMesh& mesh, const Adjacency& adjacency, const std::vector<Vec3>& normals) {
+    std::vector<Vec3> sums(mesh.vertexCount());
+    std::vector<int> counts(mesh.vertexCount(), 0);
+    for (Index h = 0; h < adjacency.corners(); ++h) {
+        sums[adjacency.vertex(h)] += mesh.points[adjacency.target(h)];
+        ++counts[adjacency.vertex(h)];
+    }
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+        const Vec3 move = 0.5 * ((1.0 / counts[v]) * sums[v] - mesh.points[v]);
+        mesh.points[v] += move - dot(move, normals[v]) * normals[v];
+    }
+}
+
+PolygonMesh refined(const PolygonMesh& coarse, const MeshScheme& scheme, const Surface& surface,
+                    const Tree& tree) {
+    const auto step = scheme.step(coarse, "");
+    PolygonMesh fine = step->refined();
+    fine.points = step->subdivide(coarse.points);
+    const Adjacency adjacency(fine);
+    auto normals = project(fine.points, surface, tree);
+    for (int k = 0; k < kRelaxations; ++k) {
+        relax(fine, adjacency, normals);
+        normals = project(fine.points, surface, tree);
+    }
+    return fine;
+}
+
+void measure(const PolygonMesh& mesh, const PolygonMesh& input, const Surface& original, const Tree& tree) {
+    const double size = diagonal(input.points);
+    const Surface made = surfaceOf(mesh);
+    const Tree back(faces(made).first, faces(made).second, made);
+    double squares = 0, most = 0;
+    for (const Vec3& p : input.points) {
+        const double distance = length(nearest(back, p) - p);
+        squares += distance * distance;
+        most = std::max(most, distance);
+    }
+    std::size_t against = 0;
+    for (const auto f : made.faces()) {
+        Vec3 middle;
+        for (const auto v : made.vertices_around_face(made.halfedge(f)))
+            middle += (1.0 / 3) * Vec3{made.point(v).x(), made.point(v).y(), made.point(v).z()};
+        const auto found = tree.closest_point_and_primitive({middle.x, middle.y, middle.z}).second;
+        if (dot(normal(made, f), normal(original, found)) < 0) ++against;
+    }
+    fmt::print(
+        "{} vertices, {} faces; surface to mesh: rms {:.2e}, max {:.2e} of the diagonal; {} of {} triangles "
+        "point against the surface\n",
+        mesh.vertexCount(), mesh.faceCount(), std::sqrt(squares / double(input.points.size())) / size,
+        most / size, against, made.number_of_faces());
+}
+
+struct Options {
+    std::string in, out, scheme = "loop";
+    std::size_t triangles = 700;
+    int levels = 4;
+};
+
+Options parse(int count, char** words) {
+    Options options;
+    std::vector<std::string> files;
+    for (int k = 1; k < count; ++k) {
+        const std::string word = words[k];
+        const bool takesValue = word == "--triangles" || word == "--levels" || word == "--scheme";
+        if (takesValue && k + 1 == count) throw InputError(word, "needs a value");
+        if (word == "--triangles") {
+            options.triangles = std::strtoul(words[++k], nullptr, 10);
+        } else if (word == "--levels") {
+            options.levels = std::atoi(words[++k]);
+        } else if (word == "--scheme") {
+            options.scheme = words[++k];
+        } else {
+            files.push_back(word);
+        }
+    }
+    if (files.size() != 2)
+        throw InputError("semiregular IN OUT [--triangles N] [--levels L] [--scheme loop|catmull-clark]");
+    options.in = files[0];
+    options.out = files[1];
+    return options;
+}
+
+void run(const Options& options) {
+    const PolygonMesh input = readPolygonMesh(options.in);
+    requireManifold(input, options.in);
+    const Adjacency adjacency(input);
+    for (Index e = 0; e < adjacency.edges(); ++e) {
+        if (adjacency.isBoundaryEdge(e)) throw InputError(options.in, "is open; a closed surface is needed");
+    }
+    const Surface original = surfaceOf(input);
+    const Tree tree(faces(original).first, faces(original).second, original);
+    PolygonMesh mesh = collapsed(original, options.triangles);
+    const MeshScheme& scheme = meshScheme(options.scheme);
+    for (int level = 0; level < options.levels; ++level) mesh = refined(mesh, scheme, original, tree);
+    measure(mesh, input, original, tree);
+    writePolygonMesh(options.out, mesh);
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        run(parse(count, words));
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "semiregular: {}\n", error.what());
+        return 1;
+    }
+}
