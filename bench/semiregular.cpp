@@ -4,9 +4,10 @@
 //     semiregular elephant.off elephant_tri.ply  --triangles 700 --levels 4                     for loop, butterfly
 //     semiregular elephant.off elephant_quad.ply --triangles 240 --levels 4 --scheme catmull-clark
 //
-// Passes: collapse -> (refine -> project -> relax) for each level -> measure.
+// Passes: collapse -> pair -> (refine -> project -> relax) for each level -> measure.
 //   collapse  edge by edge to --triangles, keeping the topology (Lindstrom, Turk)
-//   refine    one step of the scheme; catmull-clark's first makes quads of the triangles
+//   pair      for catmull-clark: two triangles make a quad, the most rectangular pairs first; a few stay triangles
+//   refine    one step of the scheme; catmull-clark's first makes quads of all faces
 //   project   every vertex to the nearest point of the surface
 //   relax     every vertex halfway to the mean of its neighbours, but only along the surface, which spreads them
 //             evenly and leaves tips where they are; then project again. Twice.
@@ -25,6 +26,8 @@
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -73,6 +76,52 @@ PolygonMesh collapsed(Surface surface, std::size_t triangles) {
         mesh.addFace(corners);
     }
     return mesh;
+}
+
+// How far the quad a, b, c, d is from a rectangle: the largest |cosine| of its corners.
+double skewness(const std::array<Vec3, 4>& p) {
+    double most = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3 before = p[(k + 3) % 4] - p[k], after = p[(k + 1) % 4] - p[k];
+        most = std::max(most, std::abs(dot(before, after)) / (length(before) * length(after)));
+    }
+    return most;
+}
+
+PolygonMesh paired(const PolygonMesh& mesh) {
+    const Adjacency adjacency(mesh);
+    struct Pair {
+        double skewness;
+        Index h;
+        std::array<Index, 4> quad;
+    };
+    std::vector<Pair> pairs;
+    for (Index e = 0; e < adjacency.edges(); ++e) {
+        const Index h = adjacency.edgeCorner(e), g = adjacency.twin(h);
+        const std::array<Index, 4> quad{adjacency.vertex(h), adjacency.vertex(adjacency.prev(g)),
+                                        adjacency.target(h), adjacency.vertex(adjacency.prev(h))};
+        pairs.push_back({skewness({mesh.points[quad[0]], mesh.points[quad[1]], mesh.points[quad[2]],
+                                   mesh.points[quad[3]]}),
+                         h, quad});
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.skewness < b.skewness; });
+    std::vector<std::size_t> valence(mesh.vertexCount());
+    for (Index v = 0; v < mesh.vertexCount(); ++v) valence[v] = adjacency.valence(v);
+    std::vector<bool> taken(mesh.faceCount(), false);
+    PolygonMesh result;
+    result.points = mesh.points;
+    for (const auto& [unused, h, quad] : pairs) {
+        const Index f = adjacency.face(h), g = adjacency.face(adjacency.twin(h));
+        if (taken[f] || taken[g] || valence[quad[0]] <= 3 || valence[quad[2]] <= 3) continue;
+        taken[f] = taken[g] = true;
+        --valence[quad[0]], --valence[quad[2]];
+        result.addFace(quad);
+    }
+    for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+        if (!taken[f]) result.addFace(mesh.face(f));
+    }
+    return result;
 }
 
 Vec3 normal(const Surface& surface, Surface::Face_index f) {
@@ -192,6 +241,7 @@ void run(const Options& options) {
     const Tree tree(faces(original).first, faces(original).second, original);
     PolygonMesh mesh = collapsed(original, options.triangles);
     const MeshScheme& scheme = meshScheme(options.scheme);
+    if (options.scheme == "catmull-clark") mesh = paired(mesh);
     for (int level = 0; level < options.levels; ++level) mesh = refined(mesh, scheme, original, tree);
     measure(mesh, input, original, tree);
     writePolygonMesh(options.out, mesh);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -15,9 +16,17 @@ namespace isowave::subdivision {
 
 namespace {
 
-constexpr int kRegularValence = 6, kRings = 3;
-// Along the boundary A reads this many nodes either way: 7 taps of the cubic B-spline, 9 of the four-point curve.
-constexpr int kStepsLoop = 3, kStepsButterfly = 4;
+constexpr int kRegularValence = 6;
+// The window of A inside: these vertices and all edges at them, which are 2 coarseRings + 1 fine rings. Along the
+// boundary: this many nodes either way, so Loop has 7 (wide: 11) taps of the cubic B-spline there, Butterfly 9 (13) of
+// the four-point curve.
+struct Reach {
+    int coarseRings, stepsLoop, stepsButterfly;
+};
+constexpr Reach kRefinedReach{1, 3, 4}, kWideReach{2, 5, 6};
+const Reach& reachOf(TriangleStep::Fit fit) {
+    return fit == TriangleStep::Fit::Wide ? kWideReach : kRefinedReach;
+}
 // The four-point rule looks no farther than this many coarse vertices to either end of an edge.
 constexpr int kFarOnBoundary = 3;
 // Columns of P, cut to a window, are dependent exactly or not at all; their entries are of size 1.
@@ -46,22 +55,45 @@ void addOnce(std::vector<Index>& nodes, Index node) {
     if (placeIn(nodes, node) == nodes.size()) nodes.push_back(node);
 }
 
-// The exact row of A by ring: centre; ring 1; vertex and edge nodes of ring 2; of ring 3 those straight ahead of the
-// centre's edges and those beside. The lattice's symmetries make them equal within a group.
+// The exact row of A, one sixth of it: the fine nodes i d + j d', i >= 1, j >= 0, for an edge's direction d and the
+// next one's d'. A rotation by 60 degrees brings them to the other five; the lattice's symmetries keep the values.
+// A node is the coarse vertex (a, b), a d + b d' away, or the edge from there that is `turns` after direction d.
 struct RegularRow {
-    double centre, ring1, vertex2, edge2, ahead3, beside3;
+    struct Tap {
+        int a, b, turns;
+        bool onVertex;
+        double weight;
+    };
+    double centre;
+    std::vector<Tap> sixth;
 };
 
-RegularRow exactRow(const char* mask) {
-    const auto row = leastNormA(namedMask(mask), kRings);
+RegularRow exactRow(const char* mask, int coarseRings) {
+    const int rings = 2 * coarseRings + 1;
+    const auto row = leastNormA(namedMask(mask), rings);
     assert(row);
-    const auto at = [&](int x, int y) { return toDouble((*row)[{x, y}]); };
-    return {at(0, 0), at(1, 0), at(2, 0), at(1, 1), at(3, 0), at(2, 1)};
+    RegularRow result{toDouble((*row)[{}]), {}};
+    for (int i = 1; i <= rings; ++i) {
+        for (int j = 0; i + j <= rings; ++j) {
+            const double weight = toDouble((*row)[{i, j}]);
+            if (weight == 0) continue;
+            const bool odd = i % 2 != 0, oddNext = j % 2 != 0;
+            if (odd && oddNext) {
+                result.sixth.push_back({(i + 1) / 2, (j - 1) / 2, 2, false, weight});
+            } else {
+                result.sixth.push_back({i / 2, j / 2, oddNext ? 1 : 0, !odd && !oddNext, weight});
+            }
+        }
+    }
+    return result;
 }
 
-const RegularRow& regularRowOf(TriangleStep::Family family) {
-    static const RegularRow loop = exactRow("loop"), butterfly = exactRow("butterfly");
-    return family == TriangleStep::Family::Loop ? loop : butterfly;
+const RegularRow& regularRowOf(TriangleStep::Family family, TriangleStep::Fit fit) {
+    static const std::array<RegularRow, 4> rows{
+        exactRow("loop", kRefinedReach.coarseRings), exactRow("loop", kWideReach.coarseRings),
+        exactRow("butterfly", kRefinedReach.coarseRings), exactRow("butterfly", kWideReach.coarseRings)};
+    return rows[(family == TriangleStep::Family::Loop ? 0u : 2u) +
+                (fit == TriangleStep::Fit::Wide ? 1u : 0u)];
 }
 
 // Rows of least norm with AP = I on given windows. Places that look the same to P are solved for once.
@@ -280,28 +312,39 @@ void TriangleStep::rowOfA(Index v, Taps& row) const {
 }
 
 void TriangleStep::regularRow(Index v, Taps& row) const {
-    const RegularRow& a = regularRowOf(family_);
+    const RegularRow& a = regularRowOf(family_, fit_);
+    const int reach = reachOf(fit_).coarseRings;
+    // The halfedge of the same direction, from the vertex at the end; and of direction d, from the end in direction d'.
+    const auto straight = [&](Index h) { return turned(coarse_.twin(h), 3); };
+    const auto beside = [&](Index h) { return turned(coarse_.twin(turned(h, 1)), 2); };
     row.clear();
     row.push_back({v, a.centre});
     coarse_.around(v, [&](Index h) {
-        row.push_back({edgeNode(h), a.ring1});
-        row.push_back({coarse_.target(h), a.vertex2});
-        row.push_back({edgeNode(coarse_.next(h)), a.edge2});
-        // From the neighbour the edge back to v is number 0; 1 and 5 lie in ring 2, 2 to 4 in ring 3.
-        Index c = coarse_.nextAround(coarse_.twin(h));
-        for (int j = 2; j <= 4; ++j) {
-            c = coarse_.nextAround(c);
-            row.push_back({edgeNode(c), j == 3 ? a.ahead3 : a.beside3});
+        std::array<std::array<Index, kWideReach.coarseRings + 1>, kWideReach.coarseRings + 1> from;
+        for (std::size_t x = 0; x <= static_cast<std::size_t>(reach); ++x) {
+            from[x][0] = x == 0 ? h : straight(from[x - 1][0]);
+            for (std::size_t y = 1; x + y <= static_cast<std::size_t>(reach); ++y)
+                from[x][y] = beside(from[x][y - 1]);
+        }
+        for (const auto& [x, y, turns, onVertex, weight] : a.sixth) {
+            const Index at = from[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)];
+            row.push_back({onVertex ? coarse_.vertex(at) : edgeNode(turned(at, turns)), weight});
         }
     });
 }
 
-// Vertices whose window sees valence 6 only, inside: they themselves, and two rings around them.
+// The halfedge out of the same vertex, so many further round. REQUIRES: an inner vertex.
+Index TriangleStep::turned(Index h, int turns) const {
+    for (int k = 0; k < turns; ++k) h = coarse_.nextAround(h);
+    return h;
+}
+
+// Vertices whose window sees valence 6 only, inside: all vertices of the window, and one ring more.
 std::vector<char> TriangleStep::regularVertices() const {
     std::vector<char> regular(coarse_.vertices());
     for (Index v = 0; v < coarse_.vertices(); ++v)
         regular[v] = place(v) == Place::Inside && valence_[v] == kRegularValence;
-    for (int ring = 0; ring < 2; ++ring) {
+    for (int ring = 0; ring <= reachOf(fit_).coarseRings; ++ring) {
         const auto before = regular;
         for (Index h = 0; h < coarse_.corners(); ++h) {
             if (!before[coarse_.target(h)]) regular[coarse_.vertex(h)] = 0;
@@ -334,30 +377,38 @@ TriangleStep::Count TriangleStep::computedRows() const {
     return {irregular().rows.size(), irregular().different};
 }
 
-// The fine nodes within three rings: v, its neighbours, and all edges at these. REQUIRES: v lies inside.
+// The vertices within some coarse rings, and all edges at them. REQUIRES: v lies inside.
 std::vector<Index> TriangleStep::ballWindow(Index v) const {
-    std::vector<Index> window{v};
-    const auto addEdgesAt = [&](Index first) {
-        Index h = first;
+    // Each with a halfedge out of it that only depends on how it was reached, so that equal places are written down
+    // equally.
+    std::vector<Index> window{v}, from{coarse_.outgoing(v)};
+    const auto visitEdges = [&](Index first, auto visit) {  // as halfedges that leave or arrive
+        Index h = first, last = first;
         do {
-            addOnce(window, edgeNode(h));
-            addOnce(window, edgeNode(coarse_.prev(h)));
+            visit(h, coarse_.target(h));
+            last = coarse_.prev(h);
             h = coarse_.nextAround(h);
         } while (h != first && h != kNone);
+        if (h == kNone) visit(last, coarse_.vertex(last));
     };
-    addEdgesAt(coarse_.outgoing(v));
-    coarse_.around(v, [&](Index h) { addOnce(window, coarse_.target(h)); });
-    coarse_.around(v, [&](Index h) {
-        // From the edge back to v where that goes all round, so that equal places are written down equally.
-        const Index u = coarse_.target(h);
-        addEdgesAt(coarse_.isBoundaryVertex(u) ? coarse_.outgoing(u) : coarse_.twin(h));
-    });
+    std::size_t begin = 0;
+    for (int ring = 0; ring < reachOf(fit_).coarseRings; ++ring) {
+        const std::size_t end = window.size();
+        for (; begin < end; ++begin) {
+            visitEdges(from[begin], [&](Index h, Index to) {
+                if (placeIn(window, to) < window.size()) return;
+                window.push_back(to);
+                from.push_back(coarse_.isBoundaryVertex(to) ? coarse_.outgoing(to) : coarse_.twin(h));
+            });
+        }
+    }
+    for (const Index first : from) visitEdges(first, [&](Index h, Index) { addOnce(window, edgeNode(h)); });
     return window;
 }
 
 // Steps of half an edge either way: first onto the edge, then onto its far end.
 std::vector<Index> TriangleStep::boundaryWindow(Index v) const {
-    const int steps = family_ == Family::Loop ? kStepsLoop : kStepsButterfly;
+    const int steps = family_ == Family::Loop ? reachOf(fit_).stepsLoop : reachOf(fit_).stepsButterfly;
     std::vector<Index> window{v};
     for (const bool forwards : {true, false}) {
         Index at = v;
@@ -455,8 +506,12 @@ namespace {
 
 template <TriangleStep::Family family>
 std::unique_ptr<SubdivisionStep> makeStep(const PolygonMesh& coarse, std::string_view variant) {
-    return std::make_unique<TriangleStep>(
-        family, variant == "trial" ? TriangleStep::Fit::Trial : TriangleStep::Fit::Refined, coarse);
+    using Fit = TriangleStep::Fit;
+    return std::make_unique<TriangleStep>(family,
+                                          variant == "trial"  ? Fit::Trial
+                                          : variant == "wide" ? Fit::Wide
+                                                              : Fit::Refined,
+                                          coarse);
 }
 
 }  // namespace
@@ -464,7 +519,7 @@ std::unique_ptr<SubdivisionStep> makeStep(const PolygonMesh& coarse, std::string
 MeshScheme loopScheme() {
     return {"loop",
             "Loop's, of triangles: box splines where six meet",
-            {"refined", "trial"},
+            {"refined", "trial", "wide"},
             makeStep<TriangleStep::Family::Loop>,
             recoverTriangles};
 }
@@ -472,7 +527,7 @@ MeshScheme loopScheme() {
 MeshScheme butterflyScheme() {
     return {"butterfly",
             "modified Butterfly, of triangles: goes through the points",
-            {"refined", "trial"},
+            {"refined", "trial", "wide"},
             makeStep<TriangleStep::Family::Butterfly>,
             recoverTriangles};
 }
