@@ -32,7 +32,7 @@ PolygonInput readPolygons(const std::filesystem::path& path);
 // The first place where a ring meets itself other than in the points where neighbours join; false: nowhere.
 bool selfIntersection(const Ring& ring, Point& place);
 
-// Whether the file's name or content says polygons rather than image: .geojson, .json, .topojson, .txt, .gmt,
+// Whether the file's name says polygons rather than image: .geojson, .json, .topojson, .txt, .gmt,
 // .xy.
 bool looksLikePolygons(const std::filesystem::path& path);
 

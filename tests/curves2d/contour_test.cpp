@@ -23,6 +23,7 @@ TEST(Contour, RingsAreSimpleDisjointAndNestedAtEveryStepOfTheWholeZoo) {
                        [&, n = &name](int step, const RowField<float>& field) {
                            const Curves curves = extractCurves(field);
                            EXPECT_EQ(complaint(curves.rings), "") << *n << " step " << step;
+                           EXPECT_EQ(validity::complaintOfMany(curves.rings), "") << *n << " step " << step;
                            rings += curves.rings.size();
                            holes += curves.holeCount();
                        });
@@ -30,23 +31,34 @@ TEST(Contour, RingsAreSimpleDisjointAndNestedAtEveryStepOfTheWholeZoo) {
     EXPECT_GT(holes, 300u);
 }
 
-TEST(Contour, TheCheckerCanFail) {
+TEST(Contour, TheCheckersCanFail) {
     const Curves good = extractCurves(fitBinary<float>(shapes::target(3)));
+    const auto bothComplain = [](const Curves& curves) {
+        return !complaint(curves.rings).empty() && !validity::complaintOfMany(curves.rings).empty();
+    };
     ASSERT_EQ(complaint(good.rings), "");
+    ASSERT_EQ(validity::complaintOfMany(good.rings), "");
     Curves bad = good;
     std::swap(bad.rings[0].points[3], bad.rings[0].points[5]);
-    EXPECT_NE(complaint(bad.rings), "");
+    EXPECT_TRUE(bothComplain(bad)) << "a ring that crosses itself";
+    bad = good;
+    bad.rings[0].points.insert(bad.rings[0].points.begin() + 5, bad.rings[0].points[3]);
+    EXPECT_TRUE(bothComplain(bad)) << "a ring that comes back to a point of its own";
+    bad = good;
+    const Ring& ring = good.rings[0].points;
+    bad.rings[0].points.insert(bad.rings[0].points.begin() + 5, 0.5 * (ring[3] + ring[4]));
+    EXPECT_TRUE(bothComplain(bad)) << "a ring that turns back on itself";
     bad = good;
     std::reverse(bad.rings[1].points.begin(), bad.rings[1].points.end());
-    EXPECT_NE(complaint(bad.rings), "");
+    EXPECT_TRUE(bothComplain(bad)) << "a ring that turns the wrong way";
     bad = good;
-    for (CurveRing& ring : bad.rings)
-        if (ring.parent >= 0) ring.parent = -1;
-    EXPECT_NE(complaint(bad.rings), "");
+    for (CurveRing& each : bad.rings)
+        if (each.parent >= 0) each.parent = -1;
+    EXPECT_TRUE(bothComplain(bad)) << "wrong nesting";
     bad = good;
     bad.rings.push_back(bad.rings[0]);
     for (Point& p : bad.rings.back().points) p.x += 0.7;
-    EXPECT_NE(complaint(bad.rings), "");
+    EXPECT_TRUE(bothComplain(bad)) << "two rings that cross";
 }
 
 TEST(Contour, EveryPatternOfSignsOnSixteenPointsGivesValidRings) {
