@@ -25,7 +25,7 @@ Input readImageInput(const std::filesystem::path& path, const InputOptions& opti
                                      range.low));
     if (!options.iso && !range.twoValues)
         input.remarks.push_back(
-            fmt::format("--iso {}: the middle of the values {} .. {}", middle, range.low, range.high));
+            fmt::format("--iso {:g}: the middle of the values {:g} .. {:g}", middle, range.low, range.high));
     input.shape = shapeOf(bitmap, iso, options.invert, path.string());
     input.extent.take(Point{-0.5, -0.5});
     input.extent.take(Point{bitmap.width - 0.5, bitmap.height - 0.5});

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "curves2d/draw.h"
 #include "curves2d/ladder.h"
+#include "curves2d/polygon_input.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"
@@ -41,6 +42,22 @@ void refuseContradictions(const Settings& settings) {
         throw UsageError("--smooth writes Bezier curves, which only --format svg has");
     if (settings.band.value_or(2) > settings.halfWidth.value_or(4))
         throw UsageError("--band is larger than --half-width; distances are known up to the half-width only");
+}
+
+// What the input has no use for is refused, as lod does.
+void refuseForeignOptions(const Settings& settings) {
+    const bool polygons = curves2d::looksLikePolygons(settings.files[0]);
+    const struct {
+        const char* name;
+        bool given, ofPolygons;
+    } table[] = {{"--pixels", settings.pixels.has_value(), true},
+                 {"--iso", settings.iso.has_value(), false},
+                 {"--invert", settings.invert, false}};
+    for (const auto& option : table)
+        if (option.given && option.ofPolygons != polygons)
+            throw UsageError(fmt::format("{} has no meaning for {}, which {}; leave it out", option.name,
+                                         settings.files[0].string(),
+                                         polygons ? "holds polygons" : "is an image"));
 }
 
 curves2d::InputOptions inputOptions(const Settings& settings) {
@@ -97,8 +114,9 @@ class Scribe {
     const Table& table() const { return table_; }
     const Json& steps() const { return steps_; }
     std::size_t filesWritten() const { return files_; }
-    // Largest distance of a smooth curve from the zero set, pixels.
+    // Largest distance of a smooth curve from the zero set, pixels; pieces that no halving brought so near.
     double smoothDeviation() const { return deviation_ / input_.pixel; }
+    std::size_t straightPieces() const { return straightPieces_; }
 
   private:
     using Point2 = curves2d::Point;
@@ -120,6 +138,7 @@ class Scribe {
             const double tolerance = settings_.tolerance.value_or(kSmoothTolerance) * input_.pixel;
             const curves2d::SmoothCurves smooth = curves2d::smoothed(field, all, tolerance);
             deviation_ = std::max(deviation_, smooth.deviation);
+            straightPieces_ += smooth.straightPieces;
             curves2d::writeSvg(place, smooth, view_);
             return;
         }
@@ -177,6 +196,7 @@ class Scribe {
     Json steps_ = Json::array();
     std::size_t files_ = 0;
     double deviation_ = 0;
+    std::size_t straightPieces_ = 0;
 };
 
 Json reportOf(const Settings& settings, const curves2d::Input& input, const Scribe& scribe,
@@ -185,6 +205,9 @@ Json reportOf(const Settings& settings, const curves2d::Input& input, const Scri
     json["version"] = 1;
     json["input"] = {{"path", settings.files[0].string()}, {"kind", input.kind}, {"pixel", input.pixel}};
     json["fit"] = fitMethod(settings, input) == curves2d::Fit::binary ? "binary" : "distance";
+    if (settings.smooth)
+        json["smooth"] = {{"deviation", scribe.smoothDeviation() * input.pixel},
+                          {"straight_pieces", scribe.straightPieces()}};
     json["steps"] = scribe.steps();
     json["coefficients_stored"] = ladder.coefficients;
     json["control_points"] = ladder.controlPoints;
@@ -196,6 +219,7 @@ Json reportOf(const Settings& settings, const curves2d::Input& input, const Scri
 
 int runCurves(const Settings& settings, Console& console) {
     refuseContradictions(settings);
+    refuseForeignOptions(settings);
     OutputFolder out(*settings.output);
     const bool toStdout = settings.jsonFile == "-";
     std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
@@ -234,9 +258,15 @@ int runCurves(const Settings& settings, Console& console) {
     if (copy) copy->commit();
     if (toStdout) console.print(textOf(report));
     if (settings.table) console.print(scribe.table().text());
-    if (settings.smooth)
-        console.say(fmt::format("the smooth curves stay within {} pixels of the zero set",
-                                shortNumber(scribe.smoothDeviation())));
+    if (settings.smooth) {
+        const std::string straight =
+            scribe.straightPieces()
+                ? fmt::format("; {} pieces in squares that hold a sharp bend are straight",
+                              grouped(static_cast<std::int64_t>(scribe.straightPieces())))
+                : "";
+        console.say(fmt::format("the smooth curves stay within {} pixels of the zero set{}",
+                                shortNumber(scribe.smoothDeviation()), straight));
+    }
     if (!toStdout)
         console.print(fmt::format(
             "{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n", out.folder().string(),

@@ -7,6 +7,7 @@ namespace isowave::tools_test {
 namespace {
 
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 using Arguments = std::vector<std::string>;
 
 const std::string kAfrica = ISOWAVE_TEST_DATA "/curves2d/africa.geojson";
@@ -16,6 +17,12 @@ Arguments curves(const std::string& input, const Folder& folder, Arguments more 
     Arguments arguments{"curves", input, "-o", (folder / "out/map").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
+}
+
+std::vector<std::string> keysOf(const nlohmann::json& object) {
+    std::vector<std::string> keys;
+    for (const auto& item : object.items()) keys.push_back(item.key());
+    return keys;
 }
 
 TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
@@ -28,15 +35,23 @@ TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
     EXPECT_THAT(result.out, HasSubstr("step"));
     EXPECT_THAT(result.out, HasSubstr("1a"));
     const auto report = nlohmann::json::parse(contentOf(folder / "report.json"));
+    // docs/interfaces.md lists these and no others.
+    EXPECT_THAT(keysOf(report),
+                UnorderedElementsAre("version", "input", "fit", "steps", "coefficients_stored",
+                                     "control_points", "peak_memory_bytes"));
+    EXPECT_THAT(keysOf(report["input"]), UnorderedElementsAre("path", "kind", "pixel"));
     EXPECT_EQ(report["version"], 1);
+    EXPECT_EQ(report["fit"], "distance");
     EXPECT_GT(report["coefficients_stored"], report["control_points"]);
     ASSERT_GT(report["steps"].size(), 8u);
     std::size_t files = 0;
     for (const auto& step : report["steps"]) {
-        for (const char* key : {"step", "level", "file", "domain", "control_points", "nodes", "rings",
-                                "holes", "points", "area", "max_to_level0", "rms_to_level0"})
-            EXPECT_TRUE(step.contains(key)) << key;
+        EXPECT_THAT(keysOf(step), UnorderedElementsAre("step", "level", "file", "domain", "control_points",
+                                                       "nodes", "rings", "holes", "points", "area",
+                                                       "max_to_level0", "rms_to_level0"));
+        EXPECT_EQ(step["domain"].size(), 2u);
         EXPECT_EQ(step["level"].is_null(), step["step"].get<int>() % 2 == 1);
+        EXPECT_EQ(step["max_to_level0"].is_null(), step["points"] == 0);
         if (step["file"].is_null()) continue;
         ++files;
         EXPECT_TRUE(fs::exists(folder / "out/map" / step["file"].get<std::string>()));
@@ -70,7 +85,14 @@ TEST(CurvesCommand, EveryFormatAndSmoothCurves) {
         EXPECT_FALSE(fs::exists(folder / ("out/map/map_L2." + std::string(format))));
     }
     const Folder folder;
-    ASSERT_EQ(isowave(curves(kKeys, folder, {"--smooth", "--tolerance", "0.05"})).exitCode, 0);
+    const Result smooth = isowave(curves(kKeys, folder,
+                                         {"--smooth", "--tolerance", "0.05", "--levels", "0..2", "--json",
+                                          (folder / "smooth.json").string()}));
+    ASSERT_EQ(smooth.exitCode, 0);
+    EXPECT_THAT(smooth.err, HasSubstr("the smooth curves stay within 0.0"));
+    const auto said = jsonFile(folder / "smooth.json")["smooth"];
+    EXPECT_LE(said["deviation"], 0.05);
+    EXPECT_THAT(keysOf(said), UnorderedElementsAre("deviation", "straight_pieces"));
     EXPECT_THAT(contentOf(folder / "out/map/map_L0.svg"), HasSubstr("C"));
 }
 
@@ -98,6 +120,9 @@ TEST(CurvesCommand, BadInputGivesOneLineItsExitCodeAndNoFiles) {
         {"a.txt", "0 0\n1 x\n", {}, 3, "line 2"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--levels", "90..95"}, 3, "ends at level"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--pixels", "0"}, 2, "--pixels"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--invert"}, 2, "--invert has no meaning for"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--iso", "3"}, 2, "which holds polygons"},
+        {"a.pgm", "P2 2 2 255 5 5 5 6", {"--pixels", "64"}, 2, "which is an image"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--smooth", "--format", "geojson"}, 2, "--smooth"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--format", "stl"}, 2, "--format"},
     };
