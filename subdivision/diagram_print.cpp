@@ -232,14 +232,15 @@ std::string page(const std::vector<Panel>& panels) {
            body + "</svg>\n";
 }
 
+nlohmann::ordered_json toJson(Node node, Lattice lattice) {
+    if (lattice == Lattice::Line) return node.x;
+    return {node.x, node.y};
+}
+
 nlohmann::ordered_json toJson(const Diagram& diagram, Lattice lattice) {
     nlohmann::ordered_json nodes = nlohmann::ordered_json::array(), values = nodes, doubles = nodes;
     for (const auto& [node, value] : diagram) {
-        if (lattice == Lattice::Line) {
-            nodes.push_back(node.x);
-        } else {
-            nodes.push_back({node.x, node.y});
-        }
+        nodes.push_back(toJson(node, lattice));
         values.push_back(toString(value));
         doubles.push_back(toDouble(value));
     }
@@ -274,7 +275,8 @@ std::string picture(const Filters& f) {
 
 std::string json(const Filters& f) {
     const Proof proof = prove(f);
-    nlohmann::ordered_json j = {{"subdivision", f.mask.name},
+    nlohmann::ordered_json j = {{"version", 1},
+                                {"subdivision", f.mask.name},
                                 {"lattice", name(f.mask.lattice)},
                                 {"width", f.width},
                                 {"P", toJson(f.mask.p, f.mask.lattice)},
@@ -283,7 +285,7 @@ std::string json(const Filters& f) {
         auto list = nlohmann::ordered_json::array();
         for (std::size_t k = 0; k < group->size(); ++k) {
             auto one = toJson((*group)[k], f.mask.lattice);
-            one["centre"] = {f.details[k].x, f.details[k].y};
+            one["centre"] = toJson(f.details[k], f.mask.lattice);
             list.push_back(one);
         }
         j[letter] = list;

@@ -28,6 +28,9 @@ Filters wanted(const Settings& settings) {
     if (settings.files.empty() == !settings.mask)
         throw UsageError("filters: name a subdivision (" + known() +
                          ") or give your own with --mask, not both");
+    if (!settings.mask && settings.lattice != "line")
+        throw UsageError("--lattice: says where a --mask lives; " + settings.files[0].string() +
+                         " has its own");
     if (!settings.mask) return namedFilters(settings.files[0].string(), settings.width);
     return maskFilters(customMask(latticeOf(settings), parseRationals(*settings.mask)), settings.width);
 }

@@ -88,6 +88,7 @@ TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
     } cases[] = {
         {{"filters"}, 2, "name a subdivision"},
         {{"filters", "cubic", "--mask", "1 1"}, 2, "not both"},
+        {{"filters", "cubic", "--lattice", "quad"}, 2, "--lattice: says where a --mask lives"},
         {{"filters", "nurbs"}, 3, "chaikin, cubic, dlg"},
         {{"filters", "cubic", "--width", "1"}, 3, "the smallest that exists has 3 taps"},
         {{"filters", "--mask", "1/2 1/2 1/2 1/2"}, 3, "not injective"},
