@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "subdivision/construct.h"
@@ -28,8 +27,6 @@ const Reach& reachOf(TriangleStep::Fit fit) {
 }
 // The four-point rule looks no farther than this many coarse vertices to either end of an edge.
 constexpr int kFarOnBoundary = 3;
-// Columns of P, cut to a window, are dependent exactly or clearly not; this is a ratio of squared lengths.
-constexpr double kDependent = 1e-12;
 
 // s_j of the header.
 double zorinWeight(int j, int valence) {
@@ -43,15 +40,6 @@ Vec3 sum(const Taps& row, std::span<const Vec3> values) {
     Vec3 result;
     for (const auto& [node, weight] : row) result += weight * values[node];
     return result;
-}
-
-template <class Values, class Value>
-std::size_t placeIn(const Values& values, const Value& value) {
-    return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
-}
-
-void addOnce(std::vector<Index>& nodes, Index node) {
-    if (placeIn(nodes, node) == nodes.size()) nodes.push_back(node);
 }
 
 // The exact row of A, one sixth of it: the fine nodes i d + j d', i >= 1, j >= 0, for an edge's direction d and the
@@ -94,123 +82,6 @@ const RegularRow& regularRowOf(TriangleStep::Family family, TriangleStep::Fit fi
     return rows[(family == TriangleStep::Family::Loop ? 0u : 2u) +
                 (fit == TriangleStep::Fit::Wide ? 1u : 0u)];
 }
-
-// Rows of least norm with AP = I on given windows: x = P y with P'P y = (1 at v, 0 else), P cut to the window.
-// The columns of P there may be dependent, but not v's on the others, since there is a row of A (A0's) on the window;
-// so a largest independent set of them will do. Places that look the same to P are solved for once.
-class LeastNormRows {
-  public:
-    explicit LeastNormRows(const TriangleStep& step) : step_(step) {}
-
-    // REQUIRES: the window begins with v, whose row of P begins with v, and holds A0's row.
-    Taps row(const std::vector<Index>& window) {
-        cut(window);
-        const auto [entry, isNew] = solutions_.try_emplace(key_);
-        if (isNew) {
-            choose();
-            entry->second = shortest();
-        }
-        Taps result;
-        for (std::size_t k = 0; k < window.size(); ++k) result.push_back({window[k], entry->second[k]});
-        return result;
-    }
-    std::size_t different() const { return solutions_.size(); }
-
-  private:
-    // Writes P on the window into p_, its coarse vertices numbered as they come, and into key_.
-    void cut(const std::vector<Index>& window) {
-        key_.clear();
-        p_.clear();
-        touched_.clear();
-        Taps taps;
-        for (const Index node : window) {
-            step_.rowOfP(node, taps);
-            key_.push_back(static_cast<double>(taps.size()));
-            for (auto& [coarse, weight] : taps) {
-                addOnce(touched_, coarse);
-                coarse = static_cast<Index>(placeIn(touched_, coarse));
-                key_.push_back(coarse);
-                key_.push_back(weight);
-            }
-            p_.push_back(taps);
-        }
-    }
-
-    // Cholesky of P'P, the largest remaining diagonal first, until what remains is dependent: direction k holds the
-    // products of all columns with the part of the k-th chosen one that is new.
-    void choose() {
-        const std::size_t m = touched_.size();
-        std::vector<double> gram(m * m, 0.0), rest(m);
-        for (const Taps& taps : p_) {
-            for (const auto& [a, u] : taps) {
-                for (const auto& [b, w] : taps) gram[a * m + b] += u * w;
-            }
-        }
-        for (std::size_t c = 0; c < m; ++c) rest[c] = gram[c * m + c];
-        const double least = kDependent * *std::max_element(rest.begin(), rest.end());
-        chosen_.clear();
-        directions_.clear();
-        while (chosen_.size() < m) {
-            const auto c =
-                static_cast<std::size_t>(std::max_element(rest.begin(), rest.end()) - rest.begin());
-            if (rest[c] <= least) break;
-            std::vector<double> direction(gram.begin() + c * m, gram.begin() + (c + 1) * m);
-            for (const auto& before : directions_) {
-                const double along = before[c];
-                for (std::size_t k = 0; k < m; ++k) direction[k] -= along * before[k];
-            }
-            const double scale = 1 / std::sqrt(direction[c]);
-            for (std::size_t k = 0; k < m; ++k) {
-                direction[k] *= scale;
-                rest[k] -= direction[k] * direction[k];
-            }
-            rest[c] = -1;  // chosen
-            chosen_.push_back(c);
-            directions_.push_back(std::move(direction));
-        }
-    }
-
-    // y with P'P y = r on the chosen columns, 0 on the others.
-    std::vector<double> solve(const std::vector<double>& r) const {
-        const std::size_t n = chosen_.size();
-        std::vector<double> z(n), y(touched_.size(), 0.0);
-        for (std::size_t k = 0; k < n; ++k) {
-            z[k] = r[chosen_[k]];
-            for (std::size_t j = 0; j < k; ++j) z[k] -= directions_[j][chosen_[k]] * z[j];
-            z[k] /= directions_[k][chosen_[k]];
-        }
-        for (std::size_t k = n; k-- > 0;) {
-            z[k] /= directions_[k][chosen_[k]];
-            for (std::size_t j = 0; j < k; ++j) z[j] -= directions_[j][chosen_[k]] * z[k];
-            y[chosen_[k]] = z[k];
-        }
-        return y;
-    }
-
-    // Corrected once by what is left of the equations, which P'P squares the condition of.
-    std::vector<double> shortest() const {
-        std::vector<double> x(p_.size(), 0.0), r(touched_.size(), 0.0);
-        r[0] = 1;
-        for (int pass = 0; pass < 2; ++pass) {
-            const auto y = solve(r);
-            for (std::size_t k = 0; k < p_.size(); ++k) {
-                double change = 0;
-                for (const auto& [coarse, weight] : p_[k]) change += weight * y[coarse];
-                x[k] += change;
-                for (const auto& [coarse, weight] : p_[k]) r[coarse] -= weight * change;
-            }
-        }
-        return x;
-    }
-
-    const TriangleStep& step_;
-    std::vector<double> key_;
-    std::vector<Taps> p_;
-    std::vector<Index> touched_;
-    std::vector<std::size_t> chosen_;
-    std::vector<std::vector<double>> directions_;
-    std::map<std::vector<double>, std::vector<double>> solutions_;
-};
 
 }  // namespace
 
@@ -408,12 +279,15 @@ const TriangleStep::Irregular& TriangleStep::irregular() const {
         auto result = std::make_shared<Irregular>();
         result->rowOf.assign(coarse_.vertices(), kNone);
         const auto regular = regularVertices();
-        LeastNormRows solver(*this);
+        LeastNormRows solver([&](Index fine, Taps& row) { rowOfP(fine, row); });
         for (Index v = 0; v < coarse_.vertices(); ++v) {
             if (regular[v] || place(v) == Place::Corner) continue;
+            // A0's row lies in it, so there is one.
+            const auto window = place(v) == Place::Boundary ? boundaryWindow(v) : ballWindow(v);
+            const auto& weights = solver.weights(window);
             result->rowOf[v] = static_cast<Index>(result->rows.size());
-            result->rows.push_back(
-                solver.row(place(v) == Place::Boundary ? boundaryWindow(v) : ballWindow(v)));
+            Taps& row = result->rows.emplace_back();
+            for (std::size_t k = 0; k < window.size(); ++k) row.push_back({window[k], weights[k]});
         }
         result->different = solver.different();
         irregular_ = std::move(result);

@@ -45,17 +45,11 @@
 #include <span>
 #include <vector>
 
+#include "subdivision/least_norm_rows.h"
 #include "subdivision/mesh_scheme.h"
 #include "subdivision/polygon_mesh.h"
 
 namespace isowave::subdivision {
-
-// A node may be named more than once; its weights add up.
-struct Tap {
-    Index node;
-    double weight;
-};
-using Taps = std::vector<Tap>;
 
 class TriangleStep final : public SubdivisionStep {
   public:
