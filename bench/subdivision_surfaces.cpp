@@ -173,7 +173,7 @@ void printTimes(const MeshScheme& scheme, std::string_view variant, int levels) 
         if (distance(again, fine) > kMeshRoundTrip * std::sqrt(double(fine.size())) * diagonal(fine))
             throw std::logic_error("the round trip is wrong");
         const std::string name = std::string(scheme.name) + " " + std::string(variant);
-        if (fine.size() > 4000) {  // below, the clock's steps show
+        if (fine.size() > 60000) {  // below it all fits into the first caches
             addLine(times, name, fine.size(), connect, apart, together);
             if (scheme.name == "catmull-clark") {
                 const LiftingStep lift(mesh);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -23,8 +24,13 @@ using Corners = std::array<Index, 3>;
 
 class Search {
   public:
-    explicit Search(const PolygonMesh& mesh)
-        : mesh_(mesh), fine_(mesh), part_(mesh.faceCount(), kUnknown), inPiece_(mesh.faceCount(), false) {}
+    // names: of the mesh's vertices, for messages.
+    Search(const PolygonMesh& mesh, const std::vector<Index>& names)
+        : mesh_(mesh),
+          names_(names),
+          fine_(mesh),
+          part_(mesh.faceCount(), kUnknown),
+          inPiece_(mesh.faceCount(), false) {}
 
     Coarsening run() {
         for (Index v = 0; v < fine_.vertices(); ++v) {
@@ -39,14 +45,19 @@ class Search {
     static Part cornerOf(Index h) { return static_cast<Part>(h % 3); }
     static Index halfedge(Index t, Part k) { return 3 * t + static_cast<Index>(k); }
     Index vertex(Index t, Part k) const { return fine_.vertex(halfedge(t, k)); }
+    std::string name(Index v) const { return std::to_string(names_[v]); }
+    std::string nameOfTriangle(Index t) const {
+        return "the triangle of vertices " + name(vertex(t, 0)) + ", " + name(vertex(t, 1)) + ", " +
+               name(vertex(t, 2));
+    }
     // The corner across from a halfedge, in its own triangle.
     Index apex(Index h) const { return fine_.vertex(fine_.prev(h)); }
 
     // The piece that holds v, its lowest vertex.
     void settlePiece(Index v) {
         const auto refuse = [&](const std::string& why) {
-            throw InputError("no 1-to-4 subdivision connectivity in the piece of vertex " +
-                             std::to_string(v) + ": " + why);
+            throw InputError("no 1-to-4 subdivision connectivity in the piece of vertex " + name(v) + ": " +
+                             why);
         };
         const std::size_t size = pieceSize(v);
         if (size % 4 != 0) refuse("it has " + std::to_string(size) + " triangles, not a multiple of 4");
@@ -122,10 +133,9 @@ class Search {
         const bool facesMiddle = !isMiddle && cornerOf(h) == after(part_[t]);
         if (g == kNone) {
             if (!isMiddle && !facesMiddle) return {};
-            return "triangle " + std::to_string(t) + " would have to " + describe(t, part_[t]) +
+            return nameOfTriangle(t) + " would have to " + describe(t, part_[t]) +
                    ", but the coarse triangle would end at its edge between vertices " +
-                   std::to_string(fine_.vertex(h)) + " and " + std::to_string(fine_.target(h)) +
-                   ", which lies on the boundary";
+                   name(fine_.vertex(h)) + " and " + name(fine_.target(h)) + ", which lies on the boundary";
         }
         const Part at = cornerOf(g);
         if (facesMiddle) return assign(triangleOf(g), kMiddle);
@@ -137,7 +147,7 @@ class Search {
     std::string assign(Index t, Part as) {
         if (part_[t] == as) return {};
         if (part_[t] != kUnknown) {
-            return "triangle " + std::to_string(t) + " would have to " + describe(t, part_[t]) + " and to " +
+            return nameOfTriangle(t) + " would have to " + describe(t, part_[t]) + " and to " +
                    describe(t, as);
         }
         part_[t] = as;
@@ -148,7 +158,7 @@ class Search {
             const std::size_t around = fine_.faceValence(v);
             const bool onBoundary = fine_.isBoundaryVertex(v);
             if (around == (onBoundary ? kAroundMiddleOnBoundary : kAroundMiddleInside)) continue;
-            return "vertex " + std::to_string(v) + " would have to be the middle of a coarse edge, but has " +
+            return "vertex " + name(v) + " would have to be the middle of a coarse edge, but has " +
                    std::to_string(around) + (around == 1 ? " triangle" : " triangles") +
                    " around it; such a middle has " + (onBoundary ? "3 on the boundary" : "6 inside");
         }
@@ -157,7 +167,7 @@ class Search {
 
     std::string describe(Index t, Part as) const {
         if (as == kMiddle) return "be the middle of a coarse triangle";
-        return "lie at the remaining vertex " + std::to_string(vertex(t, as));
+        return "lie at the remaining vertex " + name(vertex(t, as));
     }
 
     // The coarse triangle around a middle. Its k-th edge has corner k of the middle on it.
@@ -175,8 +185,8 @@ class Search {
             for (std::size_t k = 0; k < 3; ++k) {
                 const Index from = c[k], to = c[(k + 1) % 3];
                 if (from == to) {
-                    return "the coarse triangle around triangle " + std::to_string(t) +
-                           " would have vertex " + std::to_string(from) + " twice";
+                    return "the coarse triangle around " + nameOfTriangle(t) + " would have vertex " +
+                           name(from) + " twice";
                 }
                 edges.emplace_back(from, to);
             }
@@ -184,8 +194,8 @@ class Search {
         std::sort(edges.begin(), edges.end());
         const auto twice = std::adjacent_find(edges.begin(), edges.end());
         if (twice == edges.end()) return {};
-        return "more than one coarse edge would run from vertex " + std::to_string(twice->first) +
-               " to vertex " + std::to_string(twice->second);
+        return "more than one coarse edge would run from vertex " + name(twice->first) + " to vertex " +
+               name(twice->second);
     }
 
     Coarsening assemble() const {
@@ -214,7 +224,7 @@ class Search {
         for (const Index v : mesh_.pinned) {
             if (number[v] == kNone) {
                 throw InputError(
-                    "vertex " + std::to_string(v) +
+                    "vertex " + name(v) +
                     " is pinned, but would be the middle of a coarse edge; only vertices that remain can be");
             }
             result.coarse.pinned.push_back(number[v]);
@@ -223,6 +233,7 @@ class Search {
     }
 
     const PolygonMesh& mesh_;
+    const std::vector<Index>& names_;
     const Adjacency fine_;
     std::vector<Part> part_;
     std::vector<bool> inPiece_;
@@ -246,25 +257,32 @@ void requireTriangles(const PolygonMesh& mesh) {
 
 Coarsening coarsenedTriangles(const PolygonMesh& fine) {
     requireTriangles(fine);
-    return Search(fine).run();
+    std::vector<Index> names(fine.vertexCount());
+    std::iota(names.begin(), names.end(), Index{0});
+    return Search(fine, names).run();
 }
 
 std::vector<Coarsening> recoverTriangles(const PolygonMesh& fine, int levels, const Progress& progress) {
+    requireTriangles(fine);
     std::vector<Coarsening> found;
+    // Of the vertices of the coarsest mesh so far, in `fine`.
+    std::vector<Index> names(fine.vertexCount());
+    std::iota(names.begin(), names.end(), Index{0});
     while (levels == kAllLevels || static_cast<int>(found.size()) < levels) {
         progress("finding coarse meshes", levels > 0 ? static_cast<double>(found.size()) / levels : 0);
+        const PolygonMesh& last = found.empty() ? fine : found.back().coarse;
         try {
-            found.push_back(coarsenedTriangles(found.empty() ? fine : found.back().coarse));
+            Coarsening next = Search(last, names).run();
+            std::vector<Index> namesOfNext(next.coarse.vertexCount());
+            for (std::size_t c = 0; c < next.fineCorner.size(); ++c)
+                namesOfNext[next.coarse.corners[c]] = names[last.corners[next.fineCorner[c]]];
+            names = std::move(namesOfNext);
+            found.push_back(std::move(next));
         } catch (const InputError& failure) {
             if (levels == kAllLevels && !found.empty()) return found;
-            std::string why = failure.what();
-            if (!found.empty())
-                why += " (vertices and triangles of the mesh that " + std::to_string(found.size()) +
-                       " levels leave)";
-            throw InputError(levels == kAllLevels
-                                 ? why
-                                 : std::to_string(found.size()) + " of " + std::to_string(levels) +
-                                       " levels are possible: " + why);
+            if (levels == kAllLevels) throw;
+            throw InputError(std::to_string(found.size()) + " of " + std::to_string(levels) +
+                             " levels are possible: " + failure.what());
         }
     }
     return found;

@@ -41,7 +41,7 @@ Coarsening coarsenedTriangles(const PolygonMesh& fine);
 // Throws InputError for a face that is no triangle and for creases.
 void requireTriangles(const PolygonMesh& mesh);
 
-// MeshScheme::recover for 1-to-4 refinement.
+// MeshScheme::recover for 1-to-4 refinement. Messages name vertices of `fine`, whatever the level.
 std::vector<Coarsening> recoverTriangles(const PolygonMesh& fine, int levels, const Progress& progress);
 
 // 1 to 4, in the order of mesh_scheme.h: the vertex on edge e gets number coarse.vertices() + e; the face of corner c
