@@ -91,6 +91,33 @@ PolygonMesh reordered(const PolygonMesh& mesh, const FinestOrder& order) {
     return result;
 }
 
+// A base edge that were a crease would have 2^count creases in the finest mesh, in the order of the base's: so the mesh
+// in which every edge is one says which fine edges lie along which base edge.
+void addCreases(const PolygonMesh& given, const std::vector<Index>& corner, const MeshScheme& scheme,
+                int count, double degrees, PolygonMesh& base) {
+    PolygonMesh all = base;
+    all.creases.clear();
+    const Adjacency coarse(base);
+    for (Index e = 0; e < coarse.edges(); ++e)
+        all.creases.push_back({coarse.vertex(coarse.edgeCorner(e)), coarse.target(coarse.edgeCorner(e)), 1});
+    const PolygonMesh finest = climb(all, scheme, scheme.variants.front(), count, {}).finest;
+
+    std::vector<Index> ofVertex(finest.vertexCount());
+    for (std::size_t c = 0; c < corner.size(); ++c) ofVertex[finest.corners[c]] = given.corners[corner[c]];
+    const Adjacency fine(given);
+    const auto folded = edgeSharpness(fine, creasesByAngle(given, fine, degrees));
+    const auto marked = edgeSharpness(coarse, base.creases);
+    const std::size_t pieces = std::size_t{1} << count;
+    for (Index e = 0; e < coarse.edges(); ++e) {
+        std::size_t sharp = 0;
+        for (std::size_t k = e * pieces; k < (e + 1) * pieces; ++k) {
+            const Crease& piece = finest.creases[k];
+            if (folded[fine.edgeBetween(ofVertex[piece.a], ofVertex[piece.b])] > 0) ++sharp;
+        }
+        if (2 * sharp > pieces && marked[e] == 0) base.creases.push_back(all.creases[e]);
+    }
+}
+
 void requireDetails(const std::vector<Vec3>& details, const SubdivisionStep& step, int number) {
     const std::size_t expected = step.fineSize() - step.coarseSize();
     if (details.size() == expected) return;
@@ -101,17 +128,18 @@ void requireDetails(const std::vector<Vec3>& details, const SubdivisionStep& ste
 
 }  // namespace
 
-Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, std::string_view variant, int levels,
+Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, const DecomposeOptions& options,
                     const Progress& progress) {
     if (const auto lines = defects(mesh); !lines.empty()) throw InputError(lines.front());
     Hierarchy result{
-        std::string(scheme.name), std::string(meshVariant(scheme, variant)), mesh, {}, false, {}};
-    const auto coarsenings = scheme.recover(mesh, levels, progress);
+        std::string(scheme.name), std::string(meshVariant(scheme, options.variant)), mesh, {}, false, {}};
+    const auto coarsenings = scheme.recover(mesh, options.levels, progress);
     if (coarsenings.empty()) return result;
 
     const int count = static_cast<int>(coarsenings.size());
     result.base = coarsenings.back().coarse;
     const auto corner = canonicalToGiven(mesh, coarsenings, scheme, result.variant, progress);
+    if (options.creaseAngle) addCreases(mesh, corner, scheme, count, *options.creaseAngle, result.base);
     const Ladder ladder = climb(result.base, scheme, result.variant, count, progress);
     result.order = orderOf(ladder.finest, mesh, corner);
 
@@ -129,11 +157,12 @@ Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, std::stri
     return result;
 }
 
-PolygonMesh reconstruct(const Hierarchy& hierarchy, int steps, const Progress& progress) {
+PolygonMesh rebuilt(const Hierarchy& hierarchy, int steps, const Progress& progress,
+                    const StepFunction& takeStep) {
     const int count = steps == kAllLevels ? hierarchy.steps() : steps;
     if (count > hierarchy.steps())
         throw InputError(
-            fmt::format("holds details for {} steps, but {} were asked for", hierarchy.steps(), count));
+            fmt::format("holds details for {} levels, but {} were asked for", hierarchy.steps(), count));
     const MeshScheme& scheme = meshScheme(hierarchy.scheme);
     PolygonMesh mesh = hierarchy.base;
     for (int k = 0; k < count; ++k) {
@@ -141,11 +170,18 @@ PolygonMesh reconstruct(const Hierarchy& hierarchy, int steps, const Progress& p
         const auto step = scheme.step(mesh, hierarchy.variant);
         requireDetails(hierarchy.details[k], *step, k + 1);
         PolygonMesh fine = step->refined();
-        fine.points = step->reconstruct(mesh.points, hierarchy.details[k]);
+        takeStep(*step, mesh.points, hierarchy.details[k], fine);
         mesh = std::move(fine);
     }
     const bool finest = count == hierarchy.steps() && !hierarchy.truncated;
     return finest ? reordered(mesh, hierarchy.order) : mesh;
+}
+
+PolygonMesh reconstruct(const Hierarchy& hierarchy, int steps, const Progress& progress) {
+    return rebuilt(
+        hierarchy, steps, progress,
+        [](const SubdivisionStep& step, const std::vector<Vec3>& coarse, const std::vector<Vec3>& stored,
+           PolygonMesh& fine) { fine.points = step.reconstruct(coarse, stored); });
 }
 
 PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int levels,
@@ -154,6 +190,8 @@ PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int le
     PolygonMesh result = mesh;
     for (int k = 0; k < levels; ++k) {
         progress("subdividing", double(k) / levels);
+        if (4 * std::uint64_t{result.corners.size()} >= kNone)
+            throw InputError(fmt::format("is too large to be subdivided {} times; {} will do", levels, k));
         const auto step = scheme.step(result, scheme.variants.front());
         PolygonMesh fine = step->refined();
         fine.points = step->subdivide(result.points);

@@ -3,12 +3,15 @@
 // Steps count from the base: after K steps, 0 <= K <= steps(), the mesh has been subdivided K times and has got the
 // first K of the details. Nothing finer has to be read or rebuilt for that.
 //   (1) reconstruct(decompose(mesh)) is `mesh`: its vertices, faces and their order; points to kMeshRoundTrip times
-//       the diagonal.
+//       the diagonal. Creases come in the order of the base's.
 //   (2) Stored numbers: base points + details = fine points, three numbers each. (Plus two whole numbers a fine
 //       point for the order of the file that the mesh came from, when it is not the canonical one.)
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,15 +45,34 @@ struct Hierarchy {
     int steps() const { return static_cast<int>(details.size()); }
 };
 
-// Finds the coarse meshes inside `mesh` and takes it apart. levels: kAllLevels or a number from 0.
+struct DecomposeOptions {
+    std::string_view variant = {};  // of the scheme; empty: its first
+    int levels = kAllLevels;        // or a number from 0
+    // Edges of the base become creases when more than half of the fine edges along them fold by more than this many
+    // degrees (0: flat). For catmull-clark, which keeps creases; besides those that the mesh has marked.
+    std::optional<double> creaseAngle = {};
+};
+
+// Finds the coarse meshes inside `mesh` and takes it apart.
 // Throws InputError, without a file name: a defect of the mesh; no subdivision connectivity; fewer levels than asked
 // for (how many are possible, and what is in the way).
-Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, std::string_view variant, int levels,
+Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, const DecomposeOptions& options,
                     const Progress& progress = {});
+inline Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, std::string_view variant,
+                           int levels, const Progress& progress = {}) {
+    return decompose(mesh, scheme, DecomposeOptions{variant, levels, {}}, progress);
+}
 
 // The mesh after `steps` steps (kAllLevels: all). The finest has the order of the mesh that was decomposed, the
 // others the canonical one. Throws InputError when the parts do not belong together.
 PolygonMesh reconstruct(const Hierarchy& hierarchy, int steps = kAllLevels, const Progress& progress = {});
+
+// The same with another way to take a step: it gets the step, its coarse points, what is stored for it, and the fine
+// mesh, whose points it is to fill in.
+using StepFunction = std::function<void(const SubdivisionStep&, const std::vector<Vec3>& coarse,
+                                        const std::vector<Vec3>& stored, PolygonMesh& fine)>;
+PolygonMesh rebuilt(const Hierarchy& hierarchy, int steps, const Progress& progress,
+                    const StepFunction& takeStep);
 
 // `mesh` subdivided `levels` times, without details.
 PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int levels,
@@ -64,6 +86,8 @@ void requireSameConnectivity(const PolygonMesh& base, const PolygonMesh& moved);
 // the sections, then the sections themselves, base first and coarse details before fine ones.
 // Throws OperationError; the file appears whole or not at all.
 void saveHierarchy(const std::filesystem::path& path, const Hierarchy& hierarchy);
+// The same bytes into a stream that throws std::ios_base::failure (AtomicFile's).
+void writeHierarchy(std::ostream& stream, const Hierarchy& hierarchy);
 // Reads the base and the details of the first `steps` steps (kAllLevels: all, and the order of the finest) and
 // nothing behind them. Throws InputError: not such a file, of a later version, truncated, damaged (a checksum of what
 // is read does not agree), fewer steps than asked for.

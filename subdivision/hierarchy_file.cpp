@@ -60,7 +60,7 @@ struct Sections {
 
 }  // namespace
 
-void saveHierarchy(const std::filesystem::path& path, const Hierarchy& hierarchy) {
+void writeHierarchy(std::ostream& stream, const Hierarchy& hierarchy) {
     std::vector<Index> sizes(hierarchy.base.faceCount());
     for (std::size_t f = 0; f < sizes.size(); ++f) sizes[f] = static_cast<Index>(hierarchy.base.faceSize(f));
     Sections sections;
@@ -81,14 +81,18 @@ void saveHierarchy(const std::filesystem::path& path, const Hierarchy& hierarchy
     Prefix prefix{{}, kVersion, static_cast<std::uint32_t>(text.size()), crcOf(text.data(), text.size())};
     std::memcpy(prefix.magic, kMagic, sizeof kMagic);
 
+    const auto write = [&](const void* data, std::size_t bytes) {
+        stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    };
+    write(&prefix, sizeof prefix);
+    write(text.data(), text.size());
+    for (const auto& [data, bytes] : sections.bytes) write(data, bytes);
+}
+
+void saveHierarchy(const std::filesystem::path& path, const Hierarchy& hierarchy) {
     AtomicFile file(path);
     try {
-        const auto write = [&](const void* data, std::size_t bytes) {
-            file.stream().write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
-        };
-        write(&prefix, sizeof prefix);
-        write(text.data(), text.size());
-        for (const auto& [data, bytes] : sections.bytes) write(data, bytes);
+        writeHierarchy(file.stream(), hierarchy);
     } catch (const std::ios_base::failure&) {
         throw OperationError(path.string(), "writing failed; is the disk full? Nothing was left behind");
     }

@@ -5,13 +5,14 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "subdivision/quad_connectivity.h"
 #include "subdivision/triangle_step.h"
 
 namespace isowave::subdivision {
 namespace {
 
 const std::vector<MeshScheme>& table() {
-    static const std::vector<MeshScheme> kSchemes{loopScheme(), butterflyScheme()};
+    static const std::vector<MeshScheme> kSchemes{catmullClarkScheme(), loopScheme(), butterflyScheme()};
     return kSchemes;
 }
 

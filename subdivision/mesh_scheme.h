@@ -64,7 +64,7 @@ class SubdivisionStep {
     std::size_t coarseSize_, fineSize_;
 };
 
-// A coarse connectivity found inside a fine mesh. `coarse` has points (those of the fine mesh's vertices that stay),
+// A coarse connectivity found inside a fine mesh. `coarse` has points (near where they belong: the scheme's step says),
 // faces, creases and pinned vertices. fineCorner[c], for each corner c of `coarse`: the corner of the fine mesh that
 // lies in it, that is, at the same vertex, in the face that one step of the scheme makes there.
 struct Coarsening {
