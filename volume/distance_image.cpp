@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "base/error.h"
@@ -70,6 +71,11 @@ openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeColl
     return result;
 }
 
+// A lattice point on the iso value is outside. The sweep would take it for inside, and put a surface around one
+// that no inside point is beside; the smallest number below zero it takes as meant, and as distance 0 where an
+// inside point is next to it.
+float strictlySigned(float excess) { return excess == 0 ? -std::numeric_limits<float>::min() : excess; }
+
 // A grid on the band with values from makeValue()(coord); elsewhere +-1 by sign, or the sweep would see a
 // surface between the band and a tile of the wrong sign.
 template <class MakeValue>
@@ -81,7 +87,7 @@ openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const NodeCollec
     leaves.foreach ([&makeValue](FloatLeaf& leaf, std::size_t) {
         auto value = makeValue();
         for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
-            leaf.setValueOnly(i, value(leaf.offsetToGlobalCoord(i)));
+            leaf.setValueOnly(i, strictlySigned(value(leaf.offsetToGlobalCoord(i))));
     });
     const openvdb::BoolTree& inside = nodes.grid->constTree();
     const auto signAt = [&inside] {
