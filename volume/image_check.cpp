@@ -67,9 +67,12 @@ std::string spacingText(const std::array<double, 3>& s) {
     return fmt::format("{:.6g} x {:.6g} x {:.6g}", s[0], s[1], s[2]);
 }
 
+// Lengths whose squares and products are numbers still, whatever the unit.
+constexpr double kLeastSpacing = 1e-12, kMostSpacing = 1e12;
+
 bool positive(const std::array<double, 3>& spacing) {
     for (const double s : spacing)
-        if (!(s > 0) || !std::isfinite(s)) return false;
+        if (!(s >= kLeastSpacing && s <= kMostSpacing)) return false;
     return true;
 }
 
@@ -92,8 +95,10 @@ void settleSpacing(const std::string& file, Header& header, const ImageReadOptio
         header.spacing = *options.spacing;
     } else if (!positive(header.spacing)) {
         throw InputError(
-            file, fmt::format("its spacing is {}; expected positive numbers; give the right one as spacing",
-                              spacingText(header.spacing)));
+            file,
+            fmt::format(
+                "its spacing is {}; expected positive numbers, 1e-12 to 1e12; give the right one as spacing",
+                spacingText(header.spacing)));
     } else if (!header.hasZSpacing) {
         header.warnings.push_back(fmt::format("{} holds no z spacing; {} mm is assumed; give the spacing",
                                               header.format, spacingText(header.spacing)));

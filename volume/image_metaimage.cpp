@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "base/error.h"
 #include "volume/image_header.h"
@@ -63,20 +65,41 @@ MetaText metaText(const fs::path& path) {
         ++number;
         const std::size_t equals = line.find_first_of("=:");
         if (equals == std::string::npos && trimmed(line).empty()) continue;
-        if (equals == std::string::npos || trimmed(line.substr(0, equals)).empty())
+        if (equals == std::string::npos || trimmed(line.substr(0, equals)).empty() ||
+            line.find('\0') != std::string::npos)
             throw InputError(path.string(),
                              fmt::format("line {} of its header is '{}'; expected 'name = value'", number,
                                          oneLine(line).substr(0, 60)));
         const std::string key = trimmed(line.substr(0, equals));
         if (countedByNDims(key) && !result.field.contains("NDims"))
             throw InputError(path.string(), fmt::format("its header has no 'NDims' before '{}'", key));
-        result.field[key] = trimmed(line.substr(equals + 1));
+        const std::string value = trimmed(line.substr(equals + 1));
+        if (const auto [earlier, first] = result.field.emplace(key, value);
+            !first && earlier->second != value)
+            throw InputError(path.string(), fmt::format("'{}' says '{}' and then '{}'; expected it once", key,
+                                                        oneLine(earlier->second), oneLine(value)));
         if (key != "ElementDataFile") continue;
         result.end = static_cast<std::int64_t>(at);
         return result;
     }
     throw InputError(path.string(),
                      "its header has no 'ElementDataFile'; it is truncated or not a MetaImage");
+}
+
+// The numbers of a field, or nothing when a word of it is none. MetaIO knows neither 0x10 nor 1e, and prints what it
+// thinks of them.
+std::vector<double> plainNumbers(const std::string& text) {
+    std::vector<double> result;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        double value = 0;
+        const char *begin = word.data() + (word[0] == '+'), *end = word.data() + word.size();
+        if (const auto parsed = std::from_chars(begin, end, value);
+            parsed.ptr != end || parsed.ec != std::errc())
+            return {};
+        result.push_back(value);
+    }
+    return result;
 }
 
 // Fields of n or n x n numbers, which MetaIO reads as far as they are numbers.
@@ -86,7 +109,7 @@ void checkMetaNumbers(const std::string& file, const MetaText& text, std::size_t
         const bool vector = key == "Offset" || key == "Position" || key == "Origin" ||
                             key == "CenterOfRotation" || key == "ElementSpacing" || key == "ElementSize";
         if (!matrix && !vector) continue;
-        const std::vector<double> found = numbers(value);
+        const std::vector<double> found = plainNumbers(value);
         const bool finite =
             std::all_of(found.begin(), found.end(), [](double v) { return std::isfinite(v); });
         if (found.size() != (matrix ? n * n : n) || !finite)
