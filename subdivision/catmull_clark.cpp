@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "subdivision/catmull_clark_wide.h"
+
 namespace isowave::subdivision {
 namespace {
 
@@ -442,6 +444,7 @@ Vec3 CatmullClarkStep::tensorOfFace(Index f, std::span<const Vec3> details) cons
 }
 
 std::unique_ptr<SubdivisionStep> catmullClarkStep(const PolygonMesh& coarse, std::string_view variant) {
+    if (variant == "wide") return std::make_unique<WideCatmullClarkStep>(coarse);
     auto kind = CatmullClarkVariant::refined;
     if (variant == "trial") kind = CatmullClarkVariant::trial;
     if (variant == "unscaled") kind = CatmullClarkVariant::unscaled;

@@ -432,7 +432,7 @@ std::vector<Coarsening> recoverQuads(const PolygonMesh& fine, int levels, const 
 MeshScheme catmullClarkScheme() {
     return {"catmull-clark",
             "polygons of any size, boundaries and creases; the fine mesh is one of quads",
-            {"refined", "trial", "unscaled", "tensor"},
+            {"refined", "trial", "unscaled", "tensor", "wide"},
             catmullClarkStep,
             recoverQuads};
 }
