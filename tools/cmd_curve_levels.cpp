@@ -14,7 +14,7 @@ int runCurveLevels(const Settings& settings, Console& console) {
     if (settings.width && !settings.mask)
         throw UsageError("--width: belongs to --mask; write --scheme cubic-7 otherwise");
     if (settings.scheme) curveScheme(*settings.scheme);  // a wrong name is not the file's fault
-    OutputFolder out(*settings.output);
+    OutputFolder out(*settings.output, Inputs(settings.files));
     const auto& input = settings.files[0];
     const CurveFile file = CurveFile::read(input);
     CurveReportOptions options;

@@ -220,7 +220,7 @@ Json reportOf(const Settings& settings, const curves2d::Input& input, const Scri
 int runCurves(const Settings& settings, Console& console) {
     refuseContradictions(settings);
     refuseForeignOptions(settings);
-    OutputFolder out(*settings.output);
+    OutputFolder out(*settings.output, Inputs(settings.files));
     const bool toStdout = settings.jsonFile == "-";
     std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
     if (settings.jsonFile && !toStdout) copy.emplace(*settings.jsonFile);

@@ -36,12 +36,22 @@ class Wanted {
     MeshFormat format() const { return format_; }
     int first() const { return first_; }
     std::optional<int> last() const { return last_; }
+    // Of all steps that may be reached.
+    std::vector<std::string> fileNames() const {
+        std::vector<std::string> names;
+        for (int step = first_; step <= std::min(last_.value_or(kMostSteps), kMostSteps); step += stride())
+            names.push_back(fileName(step));
+        return names;
+    }
     // part_L2.ply, part_s5.ply
     std::string fileName(int step) const {
         return fmt::format("{}_{}{}{}", name_, bySteps_ ? 's' : 'L', step / stride(), extensionOf(format_));
     }
 
   private:
+    // Coordinates have 32 bits, so an axis is halved at most so often.
+    static constexpr int kMostSteps = 32 * kStepsPerLevel;
+
     int stride() const { return bySteps_ ? 1 : kStepsPerLevel; }
 
     std::string name_;
@@ -230,8 +240,9 @@ std::string tableOf(const Json& report, const std::string& unit) {
 
 int runLod(const Settings& settings, Console& console) {
     StageClock clock;
-    OutputFolder out(*settings.output);
+    OutputFolder out(*settings.output, Inputs(settings.files));
     const Wanted wanted(settings, out.name(), settings.format.value_or(MeshFormat::ply));
+    for (const std::string& file : wanted.fileNames()) out.refuseInput(file);
     const std::string name = settings.files[0].string();
     const bool toStdout = settings.jsonFile == "-";
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end

@@ -11,7 +11,7 @@ namespace isowave::tools {
 int runRelief(const Settings& settings, Console& console) {
     using namespace subdivision;
     if (settings.scheme) surfaceScheme(*settings.scheme);  // a wrong name is not the file's fault
-    OutputFolder out(*settings.output);
+    OutputFolder out(*settings.output, Inputs(settings.files));
     const auto& input = settings.files[0];
     const Grid grid = readPictureOrGrid(input);
     ReliefReportOptions options;

@@ -12,10 +12,19 @@
 #include "tools/cli.h"
 #include "tools/console.h"
 #include "tools/help.h"
+#include "tools/output.h"
 
 namespace {
 
 namespace tools = isowave::tools;
+
+// Before anything is opened: a result never takes the place of what it is made from.
+void refuseToReplaceInputs(const tools::Settings& settings) {
+    const tools::Inputs inputs(settings.files);
+    for (const auto& place : {settings.output, settings.sheet, settings.svg})
+        if (place) inputs.refuse(*place);
+    if (settings.jsonFile) inputs.refuse(*settings.jsonFile);
+}
 
 int run(int argc, char** argv) {
     const tools::Invocation invocation = tools::parseCommandLine(argc, argv);
@@ -29,6 +38,7 @@ int run(int argc, char** argv) {
         console.print(tools::helpFor(*invocation.command));
         return 0;
     }
+    refuseToReplaceInputs(settings);
     std::optional<tbb::global_control> threads;
     if (settings.threads > 0)
         threads.emplace(tbb::global_control::max_allowed_parallelism,

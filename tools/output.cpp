@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "tools/settings.h"
 
 namespace isowave::tools {
 namespace fs = std::filesystem;
@@ -24,6 +25,25 @@ void refuseFolder(const fs::path& place) {
 }
 
 }  // namespace
+
+bool Inputs::contain(const fs::path& place) const {
+    std::error_code ignored;
+    for (const fs::path& input : paths_) {
+        if (fs::equivalent(input, place, ignored)) return true;
+        if (!fs::is_directory(input, ignored)) continue;
+        for (auto entry = fs::recursive_directory_iterator(input, ignored);
+             entry != fs::recursive_directory_iterator(); entry.increment(ignored))
+            if (entry->is_regular_file(ignored) && fs::equivalent(entry->path(), place, ignored)) return true;
+    }
+    return false;
+}
+
+void Inputs::refuse(const fs::path& place) const {
+    std::error_code ignored;
+    // A folder of slices may get results beside the slices.
+    if (!fs::exists(place, ignored) || fs::is_directory(place, ignored) || !contain(place)) return;
+    throw UsageError(place.string() + " is what this command reads; choose another name for the result");
+}
 
 MadeFolders::MadeFolders(const fs::path& folder) {
     std::vector<fs::path> missing;
@@ -49,7 +69,8 @@ void MadeFolders::removeMade() {
     for (auto p = made_.rbegin(); p != made_.rend(); ++p) fs::remove(*p, ignored);  // only empty ones go
 }
 
-OutputFolder::OutputFolder(const fs::path& folder) : folder_(tidy(folder)), parents_(folder_.parent_path()) {
+OutputFolder::OutputFolder(const fs::path& folder, Inputs inputs)
+    : folder_(tidy(folder)), inputs_(std::move(inputs)), parents_(folder_.parent_path()) {
     std::error_code error;
     if (!folder_.has_filename())
         throw OperationError(folder.string(), "is not a name for a folder; give -o out/part");
@@ -71,6 +92,7 @@ OutputFolder::~OutputFolder() {
 }
 
 fs::path OutputFolder::place(const std::string& name) {
+    refuseInput(name);
     refuseFolder(folder_ / name);
     names_.push_back(name);
     return hidden_ / name;

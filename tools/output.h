@@ -25,12 +25,26 @@ class MadeFolders {
     std::vector<std::filesystem::path> made_;  // outermost first
 };
 
+// What a job reads, so that nothing that it writes takes the place of it.
+class Inputs {
+  public:
+    // Files, and folders of slices: every file below those is an input.
+    explicit Inputs(std::vector<std::filesystem::path> paths = {}) : paths_(std::move(paths)) {}
+    // Throws UsageError when `place` is one of them, by whatever name: symbolic and hard links count.
+    void refuse(const std::filesystem::path& place) const;
+
+  private:
+    bool contain(const std::filesystem::path& place) const;
+
+    std::vector<std::filesystem::path> paths_;
+};
+
 // A folder that gets all files of a job at once. They are written into a hidden folder, on the same disk,
 // and renamed at the end.
 class OutputFolder {
   public:
     // Throws OperationError at once when nothing can be written there.
-    explicit OutputFolder(const std::filesystem::path& folder);
+    explicit OutputFolder(const std::filesystem::path& folder, Inputs inputs = Inputs());
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
@@ -38,7 +52,10 @@ class OutputFolder {
     const std::filesystem::path& folder() const { return folder_; }
     // The last component of the folder's name, which its files start with.
     std::string name() const { return folder_.filename().string(); }
-    // Where to write the file that will be folder()/name. Throws OperationError when a folder has that name.
+    // Throws UsageError when folder()/name is an input.
+    void refuseInput(const std::string& name) const { inputs_.refuse(folder_ / name); }
+    // Where to write the file that will be folder()/name. Throws OperationError when a folder has that name,
+    // UsageError when an input has it.
     std::filesystem::path place(const std::string& name);
     // Puts all files into the folder, in place of those of the same names; other files there stay. Throws
     // OperationError, and the folder is as it was.
@@ -50,6 +67,7 @@ class OutputFolder {
     void replaceFiles();
 
     std::filesystem::path folder_;
+    Inputs inputs_;
     MadeFolders parents_;
     std::filesystem::path hidden_;
     std::vector<std::string> names_;

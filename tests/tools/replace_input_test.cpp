@@ -1,0 +1,74 @@
+// A result never takes the place of what it is made from, whatever the name that leads there.
+#include "tests/tools/inputs.h"
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+// Every command that writes, with `place` as its result and `input` as what it reads.
+std::vector<Arguments> writers(const std::string& image, const std::string& mesh, const std::string& place) {
+    return {{"mesh", image, "--iso", "0", "--format", "ply", "-o", place},
+            {"mesh", mesh, "--voxels", "24", "--format", "ply", "-o", place},
+            {"lod", image, "--iso", "0", "-o", place},
+            {"lod", image, "--iso", "0", "-o", place + "_folder", "--json", place},
+            {"analyse", image, "--iso", "0", "-o", place},
+            {"field", image, "--iso", "0", "-o", place},
+            {"curves", image, "-o", place},
+            {"curves", image, "-o", place + "_folder", "--sheet", place},
+            {"curve-levels", image, "-o", place},
+            {"relief", image, "-o", place}};
+}
+
+void expectRefusal(const Folder& folder, const Arguments& arguments) {
+    const auto before = folder.snapshot();
+    const Result result = isowave(arguments);
+    const std::string shown = arguments[0] + " " + arguments.back();
+    EXPECT_EQ(result.exitCode, 2) << shown << ": " << result.err;
+    EXPECT_EQ(result.errorLines(), 1) << shown << ": " << result.err;
+    EXPECT_NE(result.err.find("what this command reads"), std::string::npos) << shown << ": " << result.err;
+    EXPECT_EQ(folder.snapshot(), before) << shown;
+}
+
+TEST(ReplacingTheInput, IsRefusedByEveryCommandThroughEveryName) {
+    const Folder folder;
+    const Size size{16, 16, 16};
+    // One name for all kinds of input: what it holds is never looked at.
+    const std::string input = (folder / "a.vdb").string();
+    writeNrrd(input, size, greyBall(size, 5));
+    fs::create_symlink(input, folder / "soft.vdb");
+    fs::create_hard_link(input, folder / "hard.vdb");
+    fs::create_directory(folder / "sub");
+    const std::vector<std::string> names{input, (folder / "sub/../a.vdb").string(),
+                                         (folder / "soft.vdb").string(), (folder / "hard.vdb").string()};
+    for (const std::string& name : names)
+        for (const Arguments& arguments : writers(input, input, name)) expectRefusal(folder, arguments);
+    // And the other way round: the input is named through the link.
+    expectRefusal(folder, {"analyse", (folder / "soft.vdb").string(), "--iso", "0", "-o", input});
+}
+
+TEST(ReplacingTheInput, IsRefusedForAMeshOfTheFolderThatIsTheInput) {
+    const Folder folder;
+    fs::create_directories(folder / "part");
+    writePly(folder / "part/part_L0.ply", torus(10, 4));
+    writePly(folder / "part/part_L2.ply", torus(10, 4));
+    fs::create_symlink(folder / "part/part_L2.ply", folder / "link.ply");
+    for (const char* input : {"part/part_L0.ply", "part/part_L2.ply", "link.ply"})
+        expectRefusal(folder,
+                      {"lod", (folder / input).string(), "--voxels", "24", "-o", (folder / "part").string()});
+    // Other names beside it are no harm.
+    succeed({"lod", (folder / "part/part_L0.ply").string(), "--voxels", "24", "--levels", "1..1", "-o",
+             (folder / "part").string()});
+}
+
+TEST(ReplacingTheInput, IsRefusedForASliceOfAFolder) {
+    const Folder folder;
+    fs::create_directories(folder / "slices");
+    std::ofstream(folder / "slices/1.png") << "a slice";
+    expectRefusal(folder, {"mesh", (folder / "slices").string(), "--iso", "0", "--format", "ply", "-o",
+                           (folder / "slices/1.png").string()});
+}
+
+}  // namespace
+}  // namespace isowave::tools_test
