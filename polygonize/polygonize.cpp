@@ -7,6 +7,8 @@
 //   connect  triangles between them
 // The block of a lattice edge is that of its low end; the block of a cell that of its lowest corner.
 // invariant: a sign is computed once and stored; every later pass reads it, so neighbours cannot disagree.
+//
+// F here is the field less the iso-value: a ShiftedField hands out its control points, c - iso.
 #include "polygonize/polygonize.h"
 
 #include <tbb/parallel_for.h>
@@ -53,6 +55,26 @@ void forEachBit(Word word, const Body& body) {
     for (; word != 0; word &= word - 1) body(std::countr_zero(word));
 }
 
+// The control points c - iso. Float32's difference is 0 only where c = iso and has the sign of c - iso elsewhere
+// (gradual underflow), so the shift moves no sign.
+class ShiftedField {
+  public:
+    ShiftedField(const BSplineField& field, double iso)
+        : grid_(*field.controlPoints), iso_(static_cast<float>(iso)) {}
+
+    const openvdb::FloatTree& tree() const { return grid_.tree(); }
+    void gather(const Coord& origin, PaddedBlock& block) const {
+        isowave::gather(grid_.getConstUnsafeAccessor(), origin, block);
+        if (iso_ != 0)
+            for (float& c : block.values) c -= iso_;
+    }
+    bool insideAt(const Coord& at) const { return grid_.tree().getValue(at) < iso_; }
+
+  private:
+    const openvdb::FloatGrid& grid_;
+    float iso_;
+};
+
 // ---------------------------------------------------------------------------------------------------- sample
 
 [[noreturn]] void throwNotFinite(const PaddedBlock& block, const Coord& origin) {
@@ -86,8 +108,8 @@ Signs signsOf(const PaddedBlock& block, const Coord& origin) {
 
 // The blocks on whose cells F can change sign, with the signs of their lattice points, in the order of the
 // tree.
-std::vector<Block> sample(const openvdb::FloatGrid& grid, const Progress& progress) {
-    const std::vector<Coord> candidates = variedBlocks(grid.tree());
+std::vector<Block> sample(const ShiftedField& field, const Progress& progress) {
+    const std::vector<Coord> candidates = variedBlocks(field.tree());
     struct Sampled {
         Signs signs;
         BlockBits inside;
@@ -95,7 +117,7 @@ std::vector<Block> sample(const openvdb::FloatGrid& grid, const Progress& progre
     std::vector<Sampled> sampled(candidates.size());
     forEachBlock(candidates.size(), progress, [&](std::size_t i) {
         PaddedBlock padded;
-        gather(grid.getConstUnsafeAccessor(), candidates[i], padded);
+        field.gather(candidates[i], padded);
         sampled[i].signs = signsOf(padded, candidates[i]);
         if (sampled[i].signs == Signs::mixed) sampled[i].inside = insideBits(padded);
     });
@@ -112,7 +134,7 @@ std::vector<Block> sample(const openvdb::FloatGrid& grid, const Progress& progre
 // ----------------------------------------------------------------------------------------------------- cross
 
 // Block -> its index: one voxel a block.
-void linkBlocks(std::vector<Block>& blocks, const openvdb::FloatGrid& grid, const Progress& progress) {
+void linkBlocks(std::vector<Block>& blocks, const ShiftedField& field, const Progress& progress) {
     openvdb::Int32Tree indices(-1);
     {
         openvdb::tree::ValueAccessor<openvdb::Int32Tree> accessor(indices);
@@ -125,7 +147,7 @@ void linkBlocks(std::vector<Block>& blocks, const openvdb::FloatGrid& grid, cons
             const Coord at = (block.origin >> 3).offsetBy(k >> 2, k >> 1 & 1, k & 1);
             block.ahead[k] = indices.getValue(at);
             // Not in the list: the control points in and around it all have one sign, any of them tells.
-            if (block.ahead[k] < 0) block.ahead[k] = grid.tree().getValue(at << 3) < 0 ? kInside : kOutside;
+            if (block.ahead[k] < 0) block.ahead[k] = field.insideAt(at << 3) ? kInside : kOutside;
         }
     });
 }
@@ -339,13 +361,13 @@ Vec3d gradientAt(const EdgeField& f, double t, int axis, bool insideAtLow) {
     return gradient;
 }
 
-void place(const std::vector<Block>& blocks, const openvdb::FloatGrid& grid, const ToWorld& toWorld,
+void place(const std::vector<Block>& blocks, const ShiftedField& field, const ToWorld& toWorld,
            const PolygonizeOptions& options, const Progress& progress, TriangleMesh& mesh) {
     forEachBlock(blocks.size(), progress, [&](std::size_t i) {
         const Block& block = blocks[i];
         std::size_t vertex = static_cast<std::size_t>(block.firstVertex);
         PaddedBlock padded;
-        gather(grid.getConstUnsafeAccessor(), block.origin, padded);
+        field.gather(block.origin, padded);
         for (int axis = 0; axis < 3; ++axis)
             for (int x = 0; x < kBlock; ++x)
                 forEachBit(block.crossed[axis][x], [&](int bit) {
@@ -397,23 +419,24 @@ TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& opti
                         const Progress& progress) {
     assert(options.refine == 1 || options.refine == 2 || options.refine == 4);
     assert(options.rootMargin >= 0 && options.rootMargin < 0.5 && options.rootTolerance > 0);
+    assert(std::abs(options.iso) < field.K);
     if (options.refine > 1) {
         PolygonizeOptions rest = options;
         rest.refine /= 2;
         return polygonize(refineField(field, progress), rest, progress);
     }
     constexpr std::string_view kStage = "polygonizing";
-    const openvdb::FloatGrid& grid = *field.controlPoints;
-    const ToWorld toWorld(grid.transform());
+    const ShiftedField shifted(field, options.iso);
+    const ToWorld toWorld(field.transform());
     TriangleMesh mesh;
     progress(kStage, 0);
-    std::vector<Block> blocks = sample(grid, progress);
+    std::vector<Block> blocks = sample(shifted, progress);
     progress(kStage, 0.4);
-    linkBlocks(blocks, grid, progress);
+    linkBlocks(blocks, shifted, progress);
     cross(blocks, progress);
     number(blocks, mesh);
     progress(kStage, 0.5);
-    place(blocks, grid, toWorld, options, progress, mesh);
+    place(blocks, shifted, toWorld, options, progress, mesh);
     progress(kStage, 0.9);
     connect(blocks, toWorld.mirrors(), progress, mesh);
     progress(kStage, 1);
