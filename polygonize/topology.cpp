@@ -155,25 +155,42 @@ double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + 
 // By the divergence theorem with the field x/3: the volume is the sum of (p0 - c) . n dA / 3, and for a
 // closed component any c will do. c is the middle of the component's box, so that a part far from the origin
 // does not cancel. In the order of the triangles: the sums do not depend on threads.
-void measure(const TriangleMesh& mesh, const std::vector<std::uint32_t>& componentOf,
-             std::vector<ComponentTopology>& each) {
-    std::vector<Box> boxes(each.size());
+void measure(const TriangleMesh& mesh, MeshComponents& components) {
+    std::vector<Box> boxes(components.count());
     for (const Triangle& t : mesh.triangles)
         if (!isDegenerate(t))
-            for (const std::uint32_t v : t) boxes[componentOf[v]].add(mesh.points[v]);
-    std::vector<Point> centres(each.size());
+            for (const std::uint32_t v : t) boxes[components.of[v]].add(mesh.points[v]);
+    std::vector<Point> centres(components.count());
     std::transform(boxes.begin(), boxes.end(), centres.begin(), [](const Box& box) { return box.centre(); });
     for (const Triangle& t : mesh.triangles) {
         if (isDegenerate(t)) continue;
-        const std::uint32_t component = componentOf[t[0]];
+        const std::uint32_t component = components.of[t[0]];
         const Point& a = mesh.points[t[0]];
         const Point normal = cross(minus(mesh.points[t[1]], a), minus(mesh.points[t[2]], a));
-        each[component].area += std::sqrt(dot(normal, normal)) / 2;
-        each[component].volume += dot(minus(a, centres[component]), normal) / 6;
+        components.area[component] += std::sqrt(dot(normal, normal)) / 2;
+        components.volume[component] += dot(minus(a, centres[component]), normal) / 6;
     }
 }
 
 }  // namespace
+
+MeshComponents componentsOf(const TriangleMesh& mesh) {
+    MeshComponents result;
+    std::vector<bool> used(mesh.points.size());
+    for (const Triangle& t : mesh.triangles)
+        if (!isDegenerate(t))
+            for (const std::uint32_t v : t) used[v] = true;
+    result.of = componentRoots(mesh);
+    std::uint32_t count = 0;
+    for (std::size_t v = 0; v < result.of.size(); ++v)  // a root comes before the rest of its component
+        result.of[v] = !used[v]            ? MeshComponents::kNone
+                       : result.of[v] == v ? count++
+                                           : result.of[result.of[v]];
+    result.volume.resize(count);
+    result.area.resize(count);
+    measure(mesh, result);
+    return result;
+}
 
 MeshTopology topologyOf(const TriangleMesh& mesh) {
     const std::size_t n = mesh.points.size();
@@ -195,15 +212,12 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
     Counts counts;
     for (const Local& local : locals) counts += local.counts;
 
-    // Components are numbered by their smallest vertex.
-    std::vector<std::uint32_t> component = componentRoots(mesh);
+    const MeshComponents components = componentsOf(mesh);
     MeshTopology result;
+    result.each.resize(components.count());
     for (std::size_t v = 0; v < n; ++v) {
-        if (stars.first[v] == stars.first[v + 1]) continue;
-        const bool isRoot = component[v] == v;
-        component[v] = isRoot ? static_cast<std::uint32_t>(result.each.size()) : component[component[v]];
-        if (isRoot) result.each.emplace_back();
-        ComponentTopology& c = result.each[component[v]];
+        if (components.of[v] == MeshComponents::kNone) continue;
+        ComponentTopology& c = result.each[components.of[v]];
         ++c.vertices;
         c.edges += edgesUp[v];
     }
@@ -211,8 +225,11 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
         if (isDegenerate(t))
             ++result.degenerateTriangles;
         else
-            ++result.each[component[t[0]]].triangles;
-    measure(mesh, component, result.each);
+            ++result.each[components.of[t[0]]].triangles;
+    for (std::size_t i = 0; i < components.count(); ++i) {
+        result.each[i].volume = components.volume[i];
+        result.each[i].area = components.area[i];
+    }
 
     result.triangles = static_cast<std::int64_t>(mesh.triangles.size());
     result.boundaryEdges = counts.boundary;
@@ -225,6 +242,7 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
         c.genus = (2 - c.euler) / 2;
         result.vertices += c.vertices;
         result.genus += c.genus;
+        ++(c.volume < 0 ? result.cavities : result.parts);
         result.volume += c.volume;
         result.area += c.area;
     }

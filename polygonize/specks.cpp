@@ -1,0 +1,85 @@
+#include "polygonize/specks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isowave {
+
+double nodeVolume(const openvdb::math::Transform& transform) {
+    return std::abs(transform.baseMap()->getAffineMap()->getMat4().getMat3().det());
+}
+
+std::vector<bool> areSpecks(const std::vector<double>& volumes, double smallest) {
+    std::vector<bool> result(volumes.size());
+    for (std::size_t i = 0; i < volumes.size(); ++i) result[i] = std::abs(volumes[i]) < smallest;
+    const auto largest = std::max_element(volumes.begin(), volumes.end());  // the first one of several
+    if (largest != volumes.end()) result[static_cast<std::size_t>(largest - volumes.begin())] = false;
+    return result;
+}
+
+namespace {
+
+// Of the components that are wanted, in their order.
+std::vector<PointBox> boxesOf(const TriangleMesh& mesh, const MeshComponents& components,
+                              const std::vector<bool>& wanted) {
+    std::vector<PointBox> boxes(components.count(),
+                                {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}});
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        if (components.of[v] == MeshComponents::kNone) continue;
+        PointBox& box = boxes[components.of[v]];
+        for (int a = 0; a < 3; ++a) {
+            box.low[a] = std::min(box.low[a], mesh.points[v][a]);
+            box.high[a] = std::max(box.high[a], mesh.points[v][a]);
+        }
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (wanted[i]) boxes[kept++] = boxes[i];
+    boxes.resize(kept);
+    return boxes;
+}
+
+}  // namespace
+
+SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest) {
+    SpeckRemoval removal;
+    if (!(smallest > 0)) return removal;
+    const MeshComponents components = componentsOf(mesh);
+    const std::vector<bool> isSpeck = areSpecks(components.volume, smallest);
+    for (std::size_t i = 0; i < components.count(); ++i) {
+        if (!isSpeck[i]) continue;
+        const double volume = components.volume[i];
+        ++(volume < 0 ? removal.bubbles : removal.specks);
+        (volume < 0 ? removal.bubbleVolume : removal.speckVolume) += std::abs(volume);
+    }
+    if (removal.specks + removal.bubbles == 0) return removal;
+    removal.boxes = boxesOf(mesh, components, isSpeck);
+
+    std::vector<std::uint32_t> renamed(mesh.points.size(), MeshComponents::kNone);
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        if (components.of[v] == MeshComponents::kNone || isSpeck[components.of[v]]) continue;
+        mesh.points[kept] = mesh.points[v];
+        if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[v];
+        renamed[v] = kept++;
+    }
+    mesh.points.resize(kept);
+    if (!mesh.normals.empty()) mesh.normals.resize(kept);
+    std::size_t out = 0;
+    for (const Triangle& t : mesh.triangles)
+        if (renamed[t[0]] != MeshComponents::kNone)
+            mesh.triangles[out++] = {renamed[t[0]], renamed[t[1]], renamed[t[2]]};
+    mesh.triangles.resize(out);
+    return removal;
+}
+
+double volumeWithoutSpecks(const TriangleMesh& mesh, double smallest) {
+    const MeshComponents components = componentsOf(mesh);
+    const std::vector<bool> isSpeck = areSpecks(components.volume, smallest);
+    double volume = 0;
+    for (std::size_t i = 0; i < components.count(); ++i)
+        if (!isSpeck[i]) volume += components.volume[i];
+    return volume;
+}
+
+}  // namespace isowave
