@@ -6,6 +6,7 @@
 #include "polygonize/topology.h"
 #include "tools/commands.h"
 #include "tools/input.h"
+#include "tools/level_mesh.h"
 #include "tools/steps.h"
 #include "volume/vdb_file.h"
 #include "wavelets/pyramid_file.h"
@@ -138,7 +139,30 @@ Description describeVdb(const fs::path& path) {
 
 // ---- pyramids ----
 
-Description describePyramid(const fs::path& path) {
+// What each level's mesh bounds, coarser and coarser until nothing is left: keys that storyText() reads.
+Json storiesOf(const wavelets::Pyramid& pyramid, const Settings& settings, Console& console) {
+    StageClock clock;
+    LevelMesher mesher(settings, std::nullopt, LevelMesher::Facts::few, console, clock);
+    Json stories = Json::array();
+    SolidCounts before;
+    for (int step = 0; step <= pyramid.stepCount(); step += kStepsPerLevel) {
+        const BSplineField field = pyramid.field(step, console.progress());
+        const LevelMesh level = mesher.make(step, field);
+        if (level.mesh.triangles.empty()) break;
+        const SolidCounts now = countsOf(level.topology);
+        Json story{{"step", step},
+                   {"level", step / kStepsPerLevel},
+                   {"spacing", triple(field.transform().voxelSize())}};
+        putTopology(story, level.topology);
+        story.update(level.facts);
+        story["change"] = changeJson(step == 0 ? now : before, now);
+        before = now;
+        stories.push_back(std::move(story));
+    }
+    return stories;
+}
+
+Description describePyramid(const fs::path& path, const Settings& settings, Console& console) {
     const wavelets::Pyramid pyramid = wavelets::readPyramid(path);
     Description d{start(path, "pyramid"), {}};
     const std::int64_t stored = pyramid.coefficientsStored(), points = finestControlPoints(pyramid);
@@ -173,6 +197,10 @@ Description describePyramid(const fs::path& path) {
     d.text += table.text();
     d.text += fmt::format("{} coefficients stored for {} control points (x{:.3f})\n", grouped(stored),
                           grouped(points), static_cast<double>(stored) / static_cast<double>(points));
+    d.json["levels"] = storiesOf(pyramid, settings, console);
+    const auto space = pyramid.source.find("input.space");  // as Solid::source() writes it
+    const bool isMetric = space != pyramid.source.end() && space->second != "\"unspecified\"";
+    for (const Json& level : d.json["levels"]) d.text += storyText(level, isMetric ? " mm" : "") + "\n";
     return d;
 }
 
@@ -187,7 +215,7 @@ Description describe(const fs::path& path, const Settings& settings, Console& co
         case InputKind::pyramid:
             break;
     }
-    return describePyramid(path);
+    return describePyramid(path, settings, console);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "polygonize/topology.h"
 #include "tools/commands.h"
 #include "tools/input.h"
+#include "tools/level_mesh.h"
 #include "tools/output.h"
 #include "tools/steps.h"
 
@@ -83,8 +84,7 @@ class Ladder {
     Ladder(const Wanted& wanted, const Settings& settings, const Solid& solid, OutputFolder& out,
            Console& console, StageClock& clock)
         : wanted_(wanted),
-          settings_(settings),
-          openBorder_(solid.openBorder),
+          mesher_(settings, solid.openBorder, LevelMesher::Facts::thinToo, console, clock),
           space_(outputSpace(solid, settings)),
           out_(out),
           console_(console),
@@ -94,10 +94,8 @@ class Ladder {
     void visit(int step, const BSplineField& field) {
         if (vanished_ || (step != 0 && !wanted_.has(step))) return;
         const double begin = clock_.secondsSoFar();
-        TriangleMesh mesh = [&] {
-            const StageClock::Scope scope(clock_, "polygonize");
-            return meshOf(field, openBorder_, settings_, console_.progress());
-        }();
+        LevelMesh made = mesher_.make(step, field);
+        TriangleMesh& mesh = made.mesh;
         vanished_ = mesh.triangles.empty();
         if (wanted_.has(step)) {
             Json level = fieldJson(step, field);
@@ -106,11 +104,18 @@ class Ladder {
                     fmt::format("step {}: the whole solid has vanished; the ladder ends before it", step));
             else
                 level["file"] = write(step, mesh);
+            putTopology(level, made.topology);
+            level.update(made.facts);
+            level["change"] = changeJson(counts_.value_or(countsOf(made.topology)), countsOf(made.topology));
+            counts_ = countsOf(made.topology);
             measure(level, step, mesh);
             level["seconds"] = clock_.secondsSoFar() - begin;
             levels_.push_back(std::move(level));
         }
-        if (step == 0) reference_ = std::move(mesh);
+        if (step == 0) {
+            counts_ = countsOf(made.topology);
+            reference_ = std::move(mesh);
+        }
     }
 
     bool empty() const { return reference_.triangles.empty(); }
@@ -138,7 +143,6 @@ class Ladder {
 
     void measure(Json& json, int step, const TriangleMesh& mesh) {
         const StageClock::Scope scope(clock_, "measure");
-        putTopology(json, topologyOf(mesh));
         OneSidedDistance to, from;
         if (step != 0 && !mesh.triangles.empty()) {
             if (!target_) {
@@ -156,8 +160,7 @@ class Ladder {
     }
 
     const Wanted& wanted_;
-    const Settings& settings_;
-    std::optional<Solid::Border> openBorder_;
+    LevelMesher mesher_;
     Space space_;
     OutputFolder& out_;
     Console& console_;
@@ -165,6 +168,7 @@ class Ladder {
     TriangleMesh reference_;                // level 0
     TriangleMesh sample_;                   // some of its triangles
     std::optional<DistanceTarget> target_;  // over reference_
+    std::optional<SolidCounts> counts_;     // of the level before in the report, or of step 0
     bool vanished_ = false;
     Json levels_ = Json::array();
 };
@@ -210,14 +214,6 @@ std::string numberOf(const Json& json) {
     return json.is_number_integer() ? grouped(json.get<std::int64_t>()) : shortNumber(json.get<double>());
 }
 
-// "0.957x0.957x1.5", or one number when all are the same.
-std::string voxelText(const Json& spacing) {
-    const std::string x = fmt::format("{:.4g}", spacing[0].get<double>());
-    const std::string y = fmt::format("{:.4g}", spacing[1].get<double>());
-    const std::string z = fmt::format("{:.4g}", spacing[2].get<double>());
-    return x == y && y == z ? x : x + "x" + y + "x" + z;
-}
-
 std::string tableOf(const Json& report, const std::string& unit) {
     Table table({"file", "step", "voxel" + unit, "control points", "triangles", "components", "genus",
                  unit.empty() ? "volume" : "volume [mm^3]", "rms to level 0" + unit, "max to level 0" + unit,
@@ -231,9 +227,13 @@ std::string tableOf(const Json& report, const std::string& unit) {
                    level["closed"].get<bool>() && level["manifold"].get<bool>() ? "yes" : "no"});
     }
     const double ratio = report["coefficients_stored"].get<double>() / report["control_points"].get<double>();
-    return table.text() + fmt::format("{} coefficients stored for {} control points (x{:.3f})\n",
-                                      numberOf(report["coefficients_stored"]),
-                                      numberOf(report["control_points"]), ratio);
+    std::string stories;
+    for (const Json& level : report["levels"])
+        if (level["step"] != 0 && !level["file"].is_null())
+            stories += storyText(level, unit.empty() ? "" : " mm") + "\n";
+    return table.text() + stories +
+           fmt::format("{} coefficients stored for {} control points (x{:.3f})\n",
+                       numberOf(report["coefficients_stored"]), numberOf(report["control_points"]), ratio);
 }
 
 }  // namespace

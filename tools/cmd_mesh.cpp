@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "polygonize/topology.h"
 #include "tools/commands.h"
 #include "tools/input.h"
+#include "tools/level_mesh.h"
 #include "tools/output.h"
 #include "tools/steps.h"
 
@@ -31,20 +31,22 @@ int runMesh(const Settings& settings, Console& console) {
     OutputFile out(*settings.output);
     Solid solid = loadSolid(settings.files[0], settings, console, clock);
     const Space space = outputSpace(solid, settings);
-    const auto openBorder = solid.openBorder;
+    LevelMesher mesher(settings, solid.openBorder, LevelMesher::Facts::few, console, clock);
+    if (step != 0 && mesher.needsLevel0())
+        mesher.make(0, solid.field ? *solid.field : solid.pyramid->field(0, console.progress()));
     const BSplineField field = fieldAtStep(std::move(solid), step, name, console, clock);
-    const TriangleMesh mesh = meshOf(field, openBorder, settings, console.progress());
+    const auto [mesh, topology, iso, facts] = mesher.make(step, field);
     if (mesh.triangles.empty())
         throw InputError(name,
                          fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
     writeMesh(*settings.output, mesh, format, {.space = space});
     out.commit();
 
-    const MeshTopology topology = topologyOf(mesh);
     console.print(fmt::format(
-        "{}: step {}, {} triangles, {} components, genus {}, volume {}, {}\n", settings.output->string(),
+        "{}: step {}, {} triangles, {} components, genus {}, volume {}, {}{}\n", settings.output->string(),
         step, grouped(topology.triangles), grouped(topology.components), grouped(topology.genus),
-        shortNumber(topology.volume), topology.closed() && topology.manifold() ? "closed" : "NOT closed"));
+        shortNumber(topology.volume), topology.closed() && topology.manifold() ? "closed" : "NOT closed",
+        iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K)));
     return 0;
 }
 

@@ -90,11 +90,12 @@ Value choice(const std::string& text, const std::array<std::pair<std::string_vie
 // ---- the table ----
 
 constexpr std::string_view kOutput = "lod analyse mesh field curve-levels relief curves";
-constexpr std::string_view kFit = "lod analyse mesh field";            // those that turn an input into a field
+constexpr std::string_view kFit = "lod analyse mesh field";  // those that turn an input into a field
 constexpr std::string_view kShaped = "lod analyse mesh field curves";  // those that fit a field
 constexpr std::string_view kImages = "lod analyse mesh field info";    // those that read images
 constexpr std::string_view kAll = "lod analyse mesh field info check compare curves";
-constexpr std::string_view kQuiet = "lod analyse mesh field info check compare curves filters curve-levels relief";
+constexpr std::string_view kQuiet =
+    "lod analyse mesh field info check compare curves filters curve-levels relief";
 
 constexpr Command kCommands[] = {
     {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
@@ -231,6 +232,19 @@ constexpr Option kOptions[] = {
          s.refine =
              choice(v, std::array<std::pair<std::string_view, int>, 3>{{{"1", 1}, {"2", 2}, {"4", 4}}});
      }},
+    {"--preserve-volume", "", "",
+     "each level at the iso-value that gives it the volume of level 0, to 0.01 %", "lod mesh",
+     [](Settings& s, const std::string&) { s.preserveVolume = true; }},
+    {"--protect-thin", "", "",
+     "each level at the least iso-value that keeps thin walls and rods together; thickens less with --refine "
+     "2",
+     "lod mesh", [](Settings& s, const std::string&) { s.protectThin = true; }},
+    {"--keep-specks", "", "",
+     "coarser levels keep components and cavities that are smaller than one of their nodes", "lod mesh",
+     [](Settings& s, const std::string&) { s.keepSpecks = true; }},
+    {"--features", "", "",
+     "measure parts, holes and cavities, and say up to which size they vanish (takes longer)", "lod info",
+     [](Settings& s, const std::string&) { s.features = true; }},
     {"--json", "FILE", "", "the report goes to this file too; - is standard output", "lod curves",
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");

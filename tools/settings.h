@@ -63,7 +63,11 @@ struct Settings {
     std::optional<std::filesystem::path> output;
     std::optional<MeshFormat> format;
     std::optional<Space> space;
-    int refine = 1;                       // samples of a node along each axis: 1, 2, 4
+    int refine = 1;  // samples of a node along each axis: 1, 2, 4
+    bool preserveVolume = false;
+    bool protectThin = false;
+    bool keepSpecks = false;
+    bool features = false;                // measure parts, holes and cavities of level 0
     std::optional<std::string> jsonFile;  // "-" = standard output
     bool json = false;
     bool selfIntersections = false;
@@ -82,9 +86,9 @@ struct Settings {
     bool table = false;
     std::optional<std::filesystem::path> svg;
     // Planar curves.
-    std::optional<std::int32_t> pixels;         // along the longer side of the polygons
+    std::optional<std::int32_t> pixels;  // along the longer side of the polygons
     std::optional<CurveFormat> curveFormat;
-    std::optional<double> tolerance;            // pixels of level 0
+    std::optional<double> tolerance;  // pixels of level 0
     std::optional<std::filesystem::path> sheet;
     bool smooth = false;
 

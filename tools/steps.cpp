@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "polygonize/clip.h"
-#include "polygonize/polygonize.h"
 
 namespace isowave::tools {
 namespace {
@@ -34,13 +32,6 @@ int wantedStep(const Settings& settings) {
     if (settings.step && settings.level)
         throw UsageError("--step and --level exclude each other; level L is step 3L");
     return settings.level ? kStepsPerLevel * *settings.level : settings.step.value_or(0);
-}
-
-TriangleMesh meshOf(const BSplineField& field, const std::optional<Solid::Border>& openBorder,
-                    const Settings& settings, const Progress& progress) {
-    TriangleMesh mesh = polygonize(field, {.refine = settings.refine}, progress);
-    if (!openBorder) return mesh;
-    return clipToBox(mesh, openBorder->worldToIndex, openBorder->low, openBorder->high);
 }
 
 std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid) {

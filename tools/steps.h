@@ -15,10 +15,6 @@ BSplineField fieldAtStep(Solid solid, int step, const std::string& name, Console
 // The step that --step or --level asks for; 0 when neither was given. Throws UsageError when both were.
 int wantedStep(const Settings& settings);
 
-// The mesh of a field of that solid: cut off at an open border.
-TriangleMesh meshOf(const BSplineField& field, const std::optional<Solid::Border>& openBorder,
-                    const Settings& settings, const Progress& progress);
-
 // What `info` says about a step of a pyramid.
 struct StepFacts {
     int step = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "polygonize/fields.h"
+#include "polygonize/lattice_value.h"
 #include "polygonize/polygonize.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
@@ -119,15 +120,16 @@ TEST(Features, SurvivalIsThatOfTheHolesAndBallsThemselves) {
     wavelets::analyse(finest, {.maxSteps = 9}, {}, [&](int step, const BSplineField& level) {
         const auto outside = [&](double x, double y, double z) {
             const Vec3d p(std::cos(0.2) * x - std::sin(0.2) * y, std::sin(0.2) * x + std::cos(0.2) * y, z);
-            return evaluate(level, level.transform().worldToIndex(p)) > 0;
+            return latticeInterpolated(level.controlPoints->getConstUnsafeAccessor(),
+                                       level.transform().worldToIndex(p)) > 0;
         };
         std::int64_t open = 0, balls = 0;
         for (int i = 0; i < 8; ++i) open += outside(-36.2 + 24.1 * (i % 4), -11.4 + 23.7 * (i / 4), 0.13);
         for (int i = 0; i < 4; ++i) balls += !outside(-30.3 + 20.6 * i, 0, 14.53);
         const SolidSurvival survival = survivalOf(features, level, 0);
-        EXPECT_NEAR(survival.handles.survived, open, 1)
+        EXPECT_LE(std::abs(survival.handles.survived - open), 1)
             << step;  // a core lies up to half a voxel beside the axis
-        EXPECT_NEAR(survival.parts.survived, balls + 1, 1) << step;
+        EXPECT_LE(std::abs(survival.parts.survived - balls - 1), 1) << step;
         EXPECT_EQ(survival.handles.survived + survival.handles.closed + survival.handles.torn, 8) << step;
         EXPECT_LT(survival.handles.largestVanished.value_or(0),
                   survival.handles.smallestSurviving.value_or(9) + 0.8)

@@ -75,8 +75,11 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
         EXPECT_EQ(keysOf(level),
                   (std::set<std::string>{"step", "level", "file", "spacing", "control_points", "nodes",
                                          "vertices", "triangles", "components", "genus", "closed", "manifold",
-                                         "volume", "area", "rms_to_level0", "max_to_level0",
-                                         "rms_from_level0", "max_from_level0", "seconds"}));
+                                         "volume", "area", "parts", "cavities", "specks_removed",
+                                         "speck_volume", "bubbles_removed", "bubble_volume", "iso_shift",
+                                         "iso_distance", "volume_at_iso_0", "volume_error", "thin_kept",
+                                         "thin_kept_at_iso_0", "features", "change", "rms_to_level0",
+                                         "max_to_level0", "rms_from_level0", "max_from_level0", "seconds"}));
     EXPECT_EQ(r["version"], 1);
     EXPECT_EQ(r["input"]["kind"], "grey image");
     EXPECT_EQ(r["input"]["dimensions"], Json({32, 32, 32}));

@@ -1,0 +1,69 @@
+// A step's field -> the mesh of that step, as lod, mesh and info make it: at which iso-value, less which specks; and
+// what is told about its topology.
+#pragma once
+
+#include <memory>
+
+#include "polygonize/features.h"
+#include "polygonize/level_iso.h"
+#include "polygonize/specks.h"
+#include "tools/input.h"
+
+namespace isowave::tools {
+
+// Parts, handles and cavities of the solid that a mesh bounds.
+struct SolidCounts {
+    std::int64_t parts = 0, handles = 0, cavities = 0;
+};
+SolidCounts countsOf(const MeshTopology& topology);
+
+// "36 -> 27 handles, 13 -> 5 parts", or "27 handles" where that is what it was; cavities where there are any.
+std::string changeText(const SolidCounts& before, const SolidCounts& now);
+
+// {"parts": -8, "handles": -9, "cavities": 0}
+Json changeJson(const SolidCounts& before, const SolidCounts& now);
+
+// "0.957x0.957x1.5", or one number when all are the same.
+std::string voxelText(const Json& spacing);
+
+// A line about a level of a report: "level 2 (0.8 mm): 36 -> 27 handles, 13 -> 5 parts; holes closed up to radius ...".
+// unit: " mm" or "".
+std::string storyText(const Json& level, const std::string& unit);
+
+struct LevelMesh {
+    TriangleMesh mesh;  // cut off at an open border
+    MeshTopology topology;
+    double iso = 0;  // of the field
+    Json facts;      // keys for the report: iso_shift ... features
+};
+
+class LevelMesher {
+  public:
+    enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
+    // Throws UsageError for options that exclude each other.
+    LevelMesher(const Settings& settings, const std::optional<Solid::Border>& openBorder, Facts facts,
+                Console& console, StageClock& clock);
+    ~LevelMesher();
+
+    // Whether make() must have seen step 0 before any other.
+    bool needsLevel0() const { return settings_.preserveVolume || wantsThin_ || settings_.features; }
+    LevelMesh make(int step, const BSplineField& field);
+
+  private:
+    struct Level0;
+
+    TriangleMesh polygonizeAt(const BSplineField& field, double iso) const;
+    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh);
+    double isoPreservingVolume(int step, const BSplineField& field, double smallest) const;
+    std::vector<double> thinValues(const BSplineField& field) const;
+    void putIso(Json& facts, const BSplineField& field, double smallest, const LevelMesh& level) const;
+
+    const Settings& settings_;
+    std::optional<Solid::Border> openBorder_;
+    bool wantsThin_;
+    Console& console_;
+    StageClock& clock_;
+    std::unique_ptr<Level0> level0_;
+};
+
+}  // namespace isowave::tools
