@@ -1,5 +1,5 @@
 // Makes a real surface semi-regular, so that its levels have real details: a coarse mesh of its own, refined and drawn
-// onto it level by level. The inputs of docs/subdivision_surfaces.md were made with it.
+// onto it level by level. The inputs of docs/subdivision_triangles.md were made with it.
 //
 //     semiregular elephant.off elephant_tri.ply  --triangles 700 --levels 4                     for loop, butterfly
 //     semiregular elephant.off elephant_quad.ply --triangles 240 --levels 4 --scheme catmull-clark

@@ -33,7 +33,7 @@
 //   Wide       five rings      11, 13
 //   Where all valences around are 6 that is the exact row of construct.h. Elsewhere it is computed, in doubles. A0's row
 //   lies in every window, so there is always one, never longer than A0's, and AP = I holds to rounding.
-//   Measured (a real part, docs/subdivision_surfaces.md): |f - P A f| is 9 % (Refined), 1.7 % (Wide) above the least
+//   Measured (a real part, docs/subdivision_triangles.md): |f - P A f| is 9 % (Refined), 1.7 % (Wide) above the least
 //   that any c has, after three levels 29 % and 4 %; seven rings, 0.4 % and 0.9 %, were not worth their price.
 // B = (I - P A0) at edge nodes. Q0: d at edge nodes and, at vertex nodes, what makes A0 Q0 = 0.
 //   Q = (I - P A) Q0, as in construct.h; never formed: f = P (c - A g) + g with g = Q0 d,

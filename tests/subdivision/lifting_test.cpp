@@ -1,4 +1,4 @@
-// bench/lifting.h is what docs/subdivision_surfaces.md measures against: it must be what it says.
+// bench/lifting.h is what docs/subdivision_triangles.md measures against: it must be what it says.
 #include "bench/lifting.h"
 
 #include <gtest/gtest.h>

@@ -690,6 +690,21 @@ TEST(TriangleStep, WiderRowsAreShorter) {
     }
 }
 
+// The table of docs/subdivision_triangles.md: norms of A's row at a vertex of valence n.
+TEST(TriangleStep, NoiseGrowsAsTheDocumentationSays) {
+    for (const auto& [n, trial, refined] :
+         {std::tuple(3u, 11.27, 2.23), {4u, 4.77, 1.79}, {8u, 2.09, 1.19}}) {
+        const PolygonMesh mesh = doubled(doubled(doubled(fan(n))));
+        for (const auto& [fit, expected] : {std::pair(Fit::Trial, trial), {Fit::Refined, refined}}) {
+            Taps row;
+            TriangleStep(Family::Loop, fit, mesh).rowOfA(0, row);
+            double squares = 0;
+            for (const auto& [node, weight] : gathered(row)) squares += weight * weight;
+            EXPECT_NEAR(std::sqrt(squares), expected, 0.005) << n;
+        }
+    }
+}
+
 TEST(TriangleStep, EqualPlacesAreSolvedForOnce) {
     PolygonMesh mesh = icosahedron();
     std::size_t different = 0;
