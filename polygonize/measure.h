@@ -31,9 +31,11 @@ std::int64_t countSelfIntersections(const TriangleMesh& mesh, const Progress& pr
 struct OneSidedDistance {
     double mean = 0, rms = 0;  // weighted by area (by number of pieces where the surface has no area)
     double max = 0;            // largest over the samples: a lower bound of the one-sided Hausdorff distance
-    // An upper bound of it: no point of a piece is farther from the target than the largest sample of the
-    // piece's nearest third (two corners and the centroid) plus that third's covering radius, because a
-    // distance changes by at most the way walked. Falls towards `max` as spacing -> 0.
+    // An upper bound of it: no point of the surface is farther from the target. Of two bounds for a piece the
+    // smaller holds: (1) a distance changes by at most the way walked from a sample; (2) the distance to one
+    // triangle of the target is convex, so largest at a corner of the piece. Where the bound is more than 1 %
+    // above `max`, the pieces that cause it are halved on (Tang, Lee and Kim 2009), with a limited number of
+    // samples: a bound that is still far off afterwards is true, but not tight.
     double maxBound = 0;
     double area = 0;           // of the surface that the samples lie on
     std::int64_t samples = 0;  // distances that were computed
@@ -48,6 +50,12 @@ struct MeshComparison {
     double volumeDifference = 0;      // volumeB - volumeA
 };
 
+// The point of a surface nearest to some other point, and a triangle that it lies on.
+struct NearestPoint {
+    Point at;
+    std::uint32_t triangle;
+};
+
 // A surface made ready for many distance queries (an AABB tree). Build once, ask from many threads. Keeps its
 // own copy of the mesh.
 class DistanceTarget {
@@ -60,11 +68,14 @@ class DistanceTarget {
 
     // From p to the nearest point of the surface; triangles without area count as the segments that they are.
     double distance(const Point& p) const;
+    NearestPoint nearest(const Point& p) const;
 
     // spacing: world units (0.5 = half a millimetre for images); 0 = corners and centroids of triangles only.
+    // enough: maxBound need not fall below this; to prove a limit takes fewer samples than to know the maximum to
+    // 1 %, and more of them are allowed.
     // An empty `from` gives zeros. The same result, to the bit, for any number of threads.
-    OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0,
-                                  const Progress& progress = {}) const;
+    OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0, const Progress& progress = {},
+                                  double enough = 0) const;
 
   private:
     struct Tree;
@@ -73,6 +84,6 @@ class DistanceTarget {
 
 // Both sides. Throws InputError when a mesh has no triangle.
 MeshComparison compareMeshes(const TriangleMesh& a, const TriangleMesh& b, double spacing = 0,
-                             const Progress& progress = {});
+                             const Progress& progress = {}, double enough = 0);
 
 }  // namespace isowave

@@ -4,6 +4,8 @@
 //   corners   the distance of every point that a triangle uses, once
 //   pieces    every triangle is integrated, halved first where it is larger than `spacing`
 //   sum       chunk by chunk, in order: chunks are cut by triangle number, not by thread
+//   tighten   the pieces that may hold a point farther away than any sample are halved on, the least certain
+//             ones first, until the bound is close to the maximum
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Simple_cartesian.h>
@@ -17,6 +19,7 @@
 
 #include "base/error.h"
 #include "polygonize/measure.h"
+#include "polygonize/nearest_on_triangle.h"
 
 namespace isowave {
 namespace {
@@ -28,32 +31,6 @@ using Vector3 = Kernel::Vector_3;
 constexpr std::size_t kChunk = 1024;  // triangles or points handed to a thread at once
 
 Point3 toPoint3(const Point& p) { return {p[0], p[1], p[2]}; }
-
-// ---- the nearest point of a triangle --------------------------------------------------------------------
-
-Point3 nearestOnSegment(const Point3& q, const Point3& a, const Point3& b) {
-    const Vector3 along = b - a;
-    const double length2 = along.squared_length();
-    if (length2 == 0) return a;
-    return a + std::clamp((q - a) * along / length2, 0.0, 1.0) * along;
-}
-
-// Inside the prism over the triangle the nearest point is the foot on its plane, else it lies on a side.
-// CGAL's own projection divides by the length of the normal and returns NaN for a triangle without area;
-// sliver triangles are what CAD meshes are full of, so that case has to work.
-Point3 nearestOnTriangle(const Point3& q, const Point3& a, const Point3& b, const Point3& c) {
-    const Vector3 normal = CGAL::cross_product(b - a, c - a);
-    const double normal2 = normal.squared_length();
-    const auto insideOf = [&](const Point3& u, const Point3& v) {
-        return CGAL::cross_product(v - u, q - u) * normal >= 0;
-    };
-    if (normal2 > 0 && insideOf(a, b) && insideOf(b, c) && insideOf(c, a))
-        return q - ((q - a) * normal / normal2) * normal;
-    Point3 best = nearestOnSegment(q, a, b);
-    for (const Point3& p : {nearestOnSegment(q, b, c), nearestOnSegment(q, c, a)})
-        if ((q - p).squared_length() < (q - best).squared_length()) best = p;
-    return best;
-}
 
 // ---- the tree ---------------------------------------------------------------------------------------------
 
@@ -80,7 +57,7 @@ class IndexedTriangle {
 struct Traits : CGAL::AABB_traits<Kernel, IndexedTriangle> {
     struct NearestPoint {
         Point3 operator()(const Point3& q, const IndexedTriangle& t, const Point3& bound) const {
-            const Point3 p = nearestOnTriangle(q, t.corner(0), t.corner(1), t.corner(2));
+            const Point3 p = nearestOnTriangle<Kernel>(q, t.corner(0), t.corner(1), t.corner(2));
             return (q - p).squared_length() < (q - bound).squared_length() ? p : bound;
         }
     };
@@ -89,10 +66,11 @@ struct Traits : CGAL::AABB_traits<Kernel, IndexedTriangle> {
 
 // ---- pieces -----------------------------------------------------------------------------------------------
 
-// Corners of a triangle or of a part of one, with their distances to the target.
+// Corners of a triangle or of a part of one, with their distances to the target and its triangle there.
 struct Sample {
     Point3 at;
     double distance;
+    std::uint32_t nearest;
 };
 using Piece = std::array<Sample, 3>;
 
@@ -117,6 +95,78 @@ double coveringRadius(const Point3& p, const Point3& q, const Point3& r) {
     return radius < worst ? radius : worst;  // also when radius is NaN: two corners in one place
 }
 
+// ---- bounds -----------------------------------------------------------------------------------------------
+
+// A piece with a bound for the distance of all its points.
+struct BoundedPiece {
+    Piece corners;
+    Sample centroid;
+    double bound;
+};
+
+// No point of a third (two corners and the centroid) is farther from a sample than the third's covering
+// radius, and a distance changes by at most the way walked.
+double boundByWay(const Piece& piece, const Sample& centroid) {
+    double bound = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Sample &u = piece[i], &v = piece[(i + 1) % 3];
+        bound = std::max(bound, std::max({u.distance, v.distance, centroid.distance}) +
+                                    coveringRadius(u.at, v.at, centroid.at));
+    }
+    return bound;
+}
+
+// The distance to one triangle is convex, so over a piece it is largest at a corner; the distance to the whole
+// target is smaller still. Tried with the triangles that are nearest to the piece's samples (Tang, Lee and Kim
+// 2009). Where one triangle is nearest to all of them, this is the maximum itself.
+template <class DistanceToTriangle>
+double boundByConvexity(const Piece& piece, const Sample& centroid, const DistanceToTriangle& distanceTo) {
+    double bound = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t t : {centroid.nearest, piece[0].nearest, piece[1].nearest, piece[2].nearest}) {
+        double largest = 0;
+        for (const Sample& corner : piece)
+            largest = std::max(largest, corner.nearest == t ? corner.distance : distanceTo(corner.at, t));
+        bound = std::min(bound, largest);
+    }
+    return bound;
+}
+
+// How close the bound has to come to the maximum: 1 %, or, where the maximum is next to nothing, a millionth of
+// the surface's extent.
+constexpr double kTightness = 0.01, kTightnessOfExtent = 1e-6;
+// Memory: of a chunk's pieces with a larger bound this many are kept, those with the largest.
+constexpr std::size_t kKeptPieces = kChunk;
+// Work: tightening takes at most as many samples as measuring did, but this many are always allowed; and so many
+// where there is a limit to prove.
+constexpr std::int64_t kTighteningSamples = 200'000, kProvingSamples = 4'000'000;
+
+// The pieces of a chunk whose bound is above `enough`.
+class UncertainPieces {
+  public:
+    explicit UncertainPieces(double enough) : enough_(enough) {}
+    void add(const BoundedPiece& piece) {
+        if (!(piece.bound > enough_)) return;
+        pieces_.push_back(piece);
+        if (pieces_.size() >= 2 * kKeptPieces) keepLargest();
+    }
+    // A bound for the points of all pieces that were not kept.
+    double restBound() const { return restBound_; }
+    std::vector<BoundedPiece> take() {
+        if (pieces_.size() > kKeptPieces) keepLargest();
+        return std::move(pieces_);
+    }
+
+  private:
+    void keepLargest() {
+        std::stable_sort(pieces_.begin(), pieces_.end(),
+                         [](const auto& a, const auto& b) { return a.bound > b.bound; });
+        restBound_ = std::max(restBound_, pieces_[kKeptPieces].bound);
+        pieces_.resize(kKeptPieces, pieces_.front());
+    }
+    double enough_, restBound_ = 0;
+    std::vector<BoundedPiece> pieces_;
+};
+
 struct Sums {
     double weight = 0, distance = 0, square = 0, max = 0, maxBound = 0;
     std::int64_t samples = 0;
@@ -133,7 +183,7 @@ struct Sums {
 
 double squared(double x) { return x * x; }
 
-// A/12 (v(a) + v(b) + v(c) + 9 v(centroid)) for v = distance and v = distance^2, and both bounds.
+// A/12 (v(a) + v(b) + v(c) + 9 v(centroid)) for v = distance and v = distance^2.
 void addPiece(const Piece& piece, const Sample& centroid, double weight, Sums& sums) {
     const auto& [a, b, c] = piece;
     const double corners = a.distance + b.distance + c.distance;
@@ -142,11 +192,6 @@ void addPiece(const Piece& piece, const Sample& centroid, double weight, Sums& s
     sums.distance += weight / 12 * (corners + 9 * centroid.distance);
     sums.square += weight / 12 * (corners2 + 9 * squared(centroid.distance));
     sums.max = std::max({sums.max, a.distance, b.distance, c.distance, centroid.distance});
-    for (int i = 0; i < 3; ++i) {
-        const Sample &u = piece[i], &v = piece[(i + 1) % 3];
-        const double largest = std::max({u.distance, v.distance, centroid.distance});
-        sums.maxBound = std::max(sums.maxBound, largest + coveringRadius(u.at, v.at, centroid.at));
-    }
 }
 
 double coveringRadius(const Piece& piece, const Point3& centroid) {
@@ -164,28 +209,37 @@ int longestSide(const Piece& piece) {
     return longest;
 }
 
+Point3 centroidOf(const Piece& piece) { return CGAL::centroid(piece[0].at, piece[1].at, piece[2].at); }
+
+// Both halves of a piece cut at the middle of its longest side; sampleAt(point) measures there.
+template <class SampleAt>
+std::array<Piece, 2> halves(const Piece& piece, const SampleAt& sampleAt) {
+    const int i = longestSide(piece), j = (i + 1) % 3;
+    const Sample cut = sampleAt(CGAL::midpoint(piece[i].at, piece[j].at));
+    std::array<Piece, 2> result{piece, piece};
+    result[0][i] = cut;
+    result[1][j] = cut;
+    return result;
+}
+
 // Halving the longest side, not cutting all sides into k parts: a sliver of length l and no width becomes
 // three pieces each time spacing is halved, so (l / spacing)^1.58 of them and not (l / spacing)^2. Cutting
 // slivers across into quadrangles would be linear; CAD meshes have not needed it.
-template <class Distance>
-void integrate(const Piece& piece, double weight, double spacing, int depth, const Distance& distanceTo,
-               Sums& sums) {
-    const Point3 middle = CGAL::centroid(piece[0].at, piece[1].at, piece[2].at);
+template <class SampleAt, class Visit>
+void integrate(const Piece& piece, double weight, double spacing, int depth, const SampleAt& sampleAt,
+               const Visit& visit, Sums& sums) {
+    const Point3 middle = centroidOf(piece);
     // 100 halvings use up the 53 bits of both coordinates in the plane: no smaller piece can be told apart.
     if (spacing > 0 && depth < 100 && coveringRadius(piece, middle) > spacing) {
-        const int i = longestSide(piece), j = (i + 1) % 3;
-        const Point3 at = CGAL::midpoint(piece[i].at, piece[j].at);
-        const Sample cut{at, distanceTo(at)};
         ++sums.samples;
-        for (const int end : {i, j}) {
-            Piece half = piece;
-            half[end] = cut;
-            integrate(half, weight / 2, spacing, depth + 1, distanceTo, sums);
-        }
+        for (const Piece& half : halves(piece, sampleAt))
+            integrate(half, weight / 2, spacing, depth + 1, sampleAt, visit, sums);
         return;
     }
     ++sums.samples;
-    addPiece(piece, {middle, distanceTo(middle)}, weight, sums);
+    const Sample centroid = sampleAt(middle);
+    addPiece(piece, centroid, weight, sums);
+    visit(piece, centroid);
 }
 
 // ---- chunks -----------------------------------------------------------------------------------------------
@@ -222,6 +276,13 @@ double areaOf(const TriangleMesh& mesh) {
     return area;
 }
 
+double diagonalOf(const TriangleMesh& mesh, const std::vector<char>& used) {
+    CGAL::Bbox_3 box;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) box += toPoint3(mesh.points[i]).bbox();
+    return std::hypot(box.x_span(), box.y_span(), box.z_span());
+}
+
 // Sum of the tetrahedra over all triangles from one point of the mesh, not from the origin, which may be far.
 double volumeOf(const TriangleMesh& mesh) {
     const Point3 apex = toPoint3(mesh.points[mesh.triangles[0][0]]);
@@ -250,67 +311,157 @@ struct DistanceTarget::Tree {
         boxes.accelerate_distance_queries();
     }
 
-    double distance(const Point3& p) const {
-        return std::sqrt((p - boxes.closest_point(p)).squared_length());
+    Sample sampleAt(const Point3& p) const {
+        const auto [at, triangle] = boxes.closest_point_and_primitive(p);
+        return {p, std::sqrt((p - at).squared_length()), triangle};
     }
+    double distanceToTriangle(const Point3& p, std::uint32_t triangle) const {
+        const IndexedTriangle t(boost::counting_iterator<std::uint32_t>(triangle), &mesh);
+        return std::sqrt(
+            (p - nearestOnTriangle<Kernel>(p, t.corner(0), t.corner(1), t.corner(2))).squared_length());
+    }
+    BoundedPiece bounded(const Piece& piece, const Sample& centroid) const {
+        const double convex = boundByConvexity(
+            piece, centroid, [this](const Point3& p, std::uint32_t t) { return distanceToTriangle(p, t); });
+        return {piece, centroid, std::min(convex, boundByWay(piece, centroid))};
+    }
+
+    struct Maximum {
+        double found, bound;
+        std::int64_t samples;  // that it took
+    };
+    // The largest distance over pieces of which `found` is a sample, each bound falling as pieces are halved, until
+    // it is close to the maximum or no more than `wanted`.
+    // invariant: no point of any piece, nor of those dropped for being certain, is farther than maximum.bound.
+    Maximum tighten(std::vector<BoundedPiece> pieces, double found, double restBound, double wanted,
+                    std::int64_t mostSamples, const Progress& progress) const;
 };
+
+DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedPiece> pieces, double found,
+                                                            double restBound, double wanted,
+                                                            std::int64_t mostSamples,
+                                                            const Progress& progress) const {
+    Maximum maximum{found, std::max(found, restBound), 0};
+    const auto enough = [&] { return std::max({(1 + kTightness) * maximum.found, wanted, restBound}); };
+    const auto boundOf = [&] {
+        double bound = std::max(maximum.found, restBound);
+        for (const BoundedPiece& p : pieces) bound = std::max(bound, p.bound);
+        return bound;
+    };
+    std::vector<std::array<BoundedPiece, 2>> made;
+    for (maximum.bound = boundOf(); maximum.bound > enough() && maximum.samples < mostSamples;
+         maximum.bound = boundOf()) {
+        // This round takes the upper half of the uncertainty; what is certain by now goes.
+        const double certain = enough(), now = std::max(certain, (maximum.found + maximum.bound) / 2);
+        const auto rest =
+            std::stable_partition(pieces.begin(), pieces.end(), [&](const auto& p) { return p.bound > now; });
+        std::vector<BoundedPiece> next(rest, pieces.end());
+        pieces.erase(rest, pieces.end());
+        made.resize(pieces.size());
+        tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+            if (i % kChunk == 0) progress.check();
+            const auto measureAt = [this](const Point3& p) { return sampleAt(p); };
+            const std::array<Piece, 2> parts = halves(pieces[i].corners, measureAt);
+            for (int k = 0; k < 2; ++k) made[i][k] = bounded(parts[k], measureAt(centroidOf(parts[k])));
+        });
+        maximum.samples += 3 * static_cast<std::int64_t>(pieces.size());
+        for (const auto& both : made)
+            for (const BoundedPiece& p : both) {
+                for (const Sample& corner : p.corners)
+                    maximum.found = std::max(maximum.found, corner.distance);
+                maximum.found = std::max(maximum.found, p.centroid.distance);
+            }
+        // A bound of the whole holds for its halves.
+        for (std::size_t i = 0; i < made.size(); ++i)
+            for (BoundedPiece& p : made[i]) {
+                p.bound = std::min(p.bound, pieces[i].bound);
+                next.push_back(p);
+            }
+        pieces = std::move(next);
+    }
+    return maximum;
+}
 
 DistanceTarget::DistanceTarget(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>(mesh)) {}
 DistanceTarget::~DistanceTarget() = default;
 DistanceTarget::DistanceTarget(DistanceTarget&&) noexcept = default;
 DistanceTarget& DistanceTarget::operator=(DistanceTarget&&) noexcept = default;
 
-double DistanceTarget::distance(const Point& p) const { return tree_->distance(toPoint3(p)); }
+double DistanceTarget::distance(const Point& p) const { return tree_->sampleAt(toPoint3(p)).distance; }
+
+NearestPoint DistanceTarget::nearest(const Point& p) const {
+    const auto [at, triangle] = tree_->boxes.closest_point_and_primitive(toPoint3(p));
+    return {{at.x(), at.y(), at.z()}, triangle};
+}
 
 OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double spacing,
-                                              const Progress& progress) const {
+                                              const Progress& progress, double enough) const {
     assert(spacing >= 0);
     if (from.triangles.empty()) return {};
 
+    const auto sampleAt = [this](const Point3& p) { return tree_->sampleAt(p); };
     const std::vector<char> used = usedPoints(from);
-    std::vector<double> corners(from.points.size(), 0.0);
+    std::vector<Sample> corners(from.points.size());
     forChunks(from.points.size(), progress, "distances of vertices",
               [&](std::size_t first, std::size_t last, auto) {
                   for (std::size_t i = first; i < last; ++i)
-                      if (used[i]) corners[i] = distance(from.points[i]);
+                      corners[i] = used[i] ? sampleAt(toPoint3(from.points[i])) : Sample{};
               });
+    double largestCorner = 0;
+    for (const Sample& corner : corners) largestCorner = std::max(largestCorner, corner.distance);
 
-    const double area = areaOf(from);
-    const auto distanceTo = [this](const Point3& p) { return tree_->distance(p); };
+    const double area = areaOf(from), wanted = std::max(enough, kTightnessOfExtent * diagonalOf(from, used));
     std::vector<Sums> sums((from.triangles.size() + kChunk - 1) / kChunk);
-    forChunks(
-        from.triangles.size(), progress, "distances of triangles",
-        [&](std::size_t first, std::size_t last, std::size_t chunk) {
-            for (std::size_t i = first; i < last; ++i) {
-                const Triangle& t = from.triangles[i];
-                const auto corner = [&](int k) { return Sample{toPoint3(from.points[t[k]]), corners[t[k]]}; };
-                const double weight = area > 0 ? areaOf(from, t) : 1.0;
-                integrate({corner(0), corner(1), corner(2)}, weight, spacing, 0, distanceTo, sums[chunk]);
-            }
-        });
+    std::vector<UncertainPieces> uncertain(sums.size(), UncertainPieces(std::max(largestCorner, wanted)));
+    forChunks(from.triangles.size(), progress, "distances of triangles",
+              [&](std::size_t first, std::size_t last, std::size_t chunk) {
+                  const auto visit = [&](const Piece& piece, const Sample& centroid) {
+                      const BoundedPiece bounded = tree_->bounded(piece, centroid);
+                      sums[chunk].maxBound = std::max(sums[chunk].maxBound, bounded.bound);
+                      uncertain[chunk].add(bounded);
+                  };
+                  for (std::size_t i = first; i < last; ++i) {
+                      const Triangle& t = from.triangles[i];
+                      const double weight = area > 0 ? areaOf(from, t) : 1.0;
+                      integrate({corners[t[0]], corners[t[1]], corners[t[2]]}, weight, spacing, 0, sampleAt,
+                                visit, sums[chunk]);
+                  }
+              });
 
     Sums total;
     for (const Sums& s : sums) total.add(s);
     total.samples += std::count(used.begin(), used.end(), 1);
+
+    std::vector<BoundedPiece> pieces;
+    double restBound = 0;
+    for (UncertainPieces& chunk : uncertain) {
+        const std::vector<BoundedPiece> kept = chunk.take();
+        pieces.insert(pieces.end(), kept.begin(), kept.end());
+        restBound = std::max(restBound, chunk.restBound());
+    }
+    const std::int64_t most = enough > 0 ? kProvingSamples : std::max(total.samples, kTighteningSamples);
+    const Tree::Maximum maximum =
+        tree_->tighten(std::move(pieces), total.max, restBound, wanted, most, progress);
     return {total.distance / total.weight,
             std::sqrt(total.square / total.weight),
-            total.max,
-            total.maxBound,
+            maximum.found,
+            std::min(std::max(maximum.bound, std::min(wanted, total.maxBound)),
+                     std::max(total.maxBound, maximum.found)),
             area,
-            total.samples};
+            total.samples + maximum.samples};
 }
 
 // ---- both sides -------------------------------------------------------------------------------------------
 
 MeshComparison compareMeshes(const TriangleMesh& a, const TriangleMesh& b, double spacing,
-                             const Progress& progress) {
+                             const Progress& progress, double enough) {
     for (const auto& [mesh, name] : {std::pair{&a, "first mesh"}, std::pair{&b, "second mesh"}})
         if (mesh->triangles.empty())
             throw InputError(name, "it has no triangle, so there is nothing to compare");
 
     MeshComparison result;
-    result.aToB = DistanceTarget(b).distanceFrom(a, spacing, progress);
-    result.bToA = DistanceTarget(a).distanceFrom(b, spacing, progress);
+    result.aToB = DistanceTarget(b).distanceFrom(a, spacing, progress, enough);
+    result.bToA = DistanceTarget(a).distanceFrom(b, spacing, progress, enough);
 
     // Shares of the two surfaces; halves where neither has area.
     const double areas = result.aToB.area + result.bToA.area;
