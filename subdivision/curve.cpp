@@ -125,15 +125,15 @@ std::vector<double> applied(const FilterBank& bank, int dimension, const std::ve
     return out;
 }
 
-// Inserts the point at which the last detail vanishes: with 0 there the detail is d, and it is linear in the
+// Inserts the point at which its detail vanishes: with 0 there the detail is d, and it is linear in the
 // point with the weight w that the row has there (summed up where a short closed curve meets itself).
 void insertVirtual(std::vector<double>& points, int dimension, const CurveFilters& filters, std::size_t n) {
     const auto d = static_cast<std::size_t>(dimension);
     const std::size_t place = filters.virtualPoint(n), fine = filters.fineSize(n), details = fine - n;
     points.insert(points.begin() + static_cast<std::ptrdiff_t>(place * d), d, 0.0);
     const auto inputs = static_cast<std::ptrdiff_t>(fine);
-    const auto [row, first] = rowOf(filters.maps(n).b, static_cast<std::ptrdiff_t>(details) - 1, inputs,
-                                    static_cast<std::ptrdiff_t>(details));
+    const auto [row, first] = rowOf(filters.maps(n).b, static_cast<std::ptrdiff_t>(filters.virtualDetail(n)),
+                                    inputs, static_cast<std::ptrdiff_t>(details));
     double weight = 0;
     std::vector<double> detail(d, 0.0);
     for (std::size_t k = 0; k < row->weights.size(); ++k) {
@@ -156,7 +156,10 @@ std::vector<double> halve(std::vector<double>& points, int dimension, const Curv
     const auto& maps = filters.maps(n);
     auto details = applied(maps.b, dimension, points, fine - n);
     points = applied(maps.a, dimension, points, n);
-    details.resize((m - n) * d);
+    if (fine > m) {
+        const auto withheld = details.begin() + static_cast<std::ptrdiff_t>(filters.virtualDetail(n) * d);
+        details.erase(withheld, withheld + static_cast<std::ptrdiff_t>(d));
+    }
     return details;
 }
 
@@ -169,7 +172,9 @@ std::vector<double> doubled(const std::vector<double>& points, const std::vector
     auto result = applied(maps.p, dimension, points, fine);
     if (details) {
         std::vector<double> all = *details;
-        all.resize((fine - n) * d, 0.0);
+        if (fine > m) {
+            all.insert(all.begin() + static_cast<std::ptrdiff_t>(filters.virtualDetail(n) * d), d, 0.0);
+        }
         applyBank(maps.q, dimension, all.data(), fine - n, result.data(), fine, true);
     }
     if (fine > m) {

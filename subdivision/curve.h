@@ -6,9 +6,8 @@
 //
 // (1) reconstruct(decompose(c)) differs from c by at most 1e-14 times the largest number stored (coarse points and
 //     details), for every scheme, size and depth; and by at most kCurveRoundTrip * max|c| up to 10 levels and, but for
-//     two kinds of long and rough curves, beyond. Those two store numbers that outgrow the curve: cubic-3, whose narrow
-//     A multiplies noise by sqrt((5 + sqrt 153)/4) = 2.084 a level (1e-10 after 20 levels of 1,000,003 points), and
-//     open Chaikin curves whose sizes ask for a virtual point at every level (3e-11 after all levels of 131,075).
+//     long and rough curves of cubic-3, beyond. Those store numbers that outgrow the curve: the narrow A multiplies
+//     noise by sqrt((5 + sqrt 153)/4) = 2.084 a level (1e-10 after 20 levels of 1,000,003 points).
 // (2) The numbers stored (coarse points and details of all levels) are as many as the curve has.
 // (3) Time is linear in the number of points: every level costs half of the one before.
 #pragma once

@@ -149,7 +149,7 @@ Diagram openA(const CurveScheme& scheme, const FiniteSubdivision& p, int n, int 
 
 // Twice the middle of row k of B, and the number of its taps: degree + 2, the (degree + 1)-th difference
 // inside.
-int twiceDetail(const CurveScheme& scheme, int k) {
+std::ptrdiff_t twiceDetail(const CurveScheme& scheme, std::ptrdiff_t k) {
     if (scheme.family == Family::DynLevinGregory) return 4 * k + 2;
     return scheme.degree == 2 ? 4 * k + 3 : 4 * k + 4;
 }
@@ -157,7 +157,8 @@ int twiceDetail(const CurveScheme& scheme, int k) {
 Diagram openB(const CurveScheme& scheme, const FiniteSubdivision& p, int n, int k) {
     if (scheme.family == Family::DynLevinGregory) return residualRow(p, 2 * k + 1);
     const int fine = openFineSize(scheme, n);
-    const auto row = annihilator(p, centredWindow(fine, twiceDetail(scheme, k), scheme.degree + 1));
+    const auto row =
+        annihilator(p, centredWindow(fine, static_cast<int>(twiceDetail(scheme, k)), scheme.degree + 1));
     assert(row);
     return *row;
 }
@@ -369,10 +370,10 @@ OpenSystem openSystem(const CurveScheme& scheme, int n) {
     }
     for (int k = 0; k < fine - n; ++k) {
         open.system.b.push_back(openB(scheme, open.p, n, k));
-        open.detailNode.push_back(twiceDetail(scheme, k) / 2);
+        open.detailNode.push_back(static_cast<int>(twiceDetail(scheme, k) / 2));
     }
     for (std::size_t k = 0; k < open.system.b.size(); ++k) {
-        const int centre = twiceDetail(scheme, static_cast<int>(k));
+        const int centre = static_cast<int>(twiceDetail(scheme, static_cast<std::ptrdiff_t>(k)));
         open.system.q.push_back(lifted(open.p, a, openQ(open.system.b, k, fine, centre)));
     }
     if (scheme.family == Family::BSpline) {
@@ -470,10 +471,17 @@ const CurveFilters::Maps& CurveFilters::maps(std::size_t n) const {
     return index < short_.size() ? short_[index] : long_;
 }
 
+std::size_t CurveFilters::virtualDetail(std::size_t n) const {
+    const std::size_t details = fineSize(n) - n;
+    assert(details > 0);
+    // Two beside the middle: where halving puts what the virtual point of the level before has moved, this one is not.
+    constexpr std::size_t kBesideMiddle = 2;
+    return closed_ ? details - 1 : std::min(details / 2 + kBesideMiddle, details - 1);
+}
+
 std::size_t CurveFilters::virtualPoint(std::size_t n) const {
     if (closed_) return 2 * n - 1;
-    const std::size_t details = fineSize(n) - n;
-    return static_cast<std::size_t>(twiceDetail(scheme_, static_cast<int>(details) - 1) / 2);
+    return static_cast<std::size_t>(twiceDetail(scheme_, static_cast<std::ptrdiff_t>(virtualDetail(n))) / 2);
 }
 
 }  // namespace isowave::subdivision

@@ -16,9 +16,14 @@
 // until it fits (B section 5).
 //
 // A size that the subdivision does not make (an odd number of closed points, say) is brought to one that it
-// does by a *virtual point*: one more point, placed where the last detail vanishes. That detail is then not
+// does by a *virtual point*: one more point, placed where one detail vanishes. That detail is then not
 // stored, and the point is dropped again in reconstruction, so what is stored is as much as there was. For
-// the closed cubic the point is (4(f[-1] + f[1]) - f[-2] - f[2])/6.
+// the closed cubic the point is (4(f[-1] + f[1]) - f[-2] - f[2])/6. Closed curves take it at the last detail, open
+// ones two beside the middle one. Not at the last, which the ends of Chaikin do not bear: f[0] = c[0], f[1] = (c[0] +
+// c[1])/2 there, so where the detail is zero c[1] = 2 f[1] - f[0], and a size that asks for a virtual point at every
+// level (2^k + 3) doubled what stands beside the end with every level. Not at the middle one either: halving leaves
+// the middle where it is, so each virtual point would be made of the one before (1.35 a level for chaikin-4). Two beside
+// it they do not meet, and nothing grows.
 #pragma once
 
 #include <cstddef>
@@ -107,7 +112,9 @@ class CurveFilters {
         FilterBank a, b, p, q;
     };
     const Maps& maps(std::size_t n) const;
-    // The fine point that stands for the last detail: where a virtual point goes.
+    // The detail that is not stored when a size asks for a virtual point, and the fine point that stands for it:
+    // where that point goes. REQUIRES: fineSize(n) > n.
+    std::size_t virtualDetail(std::size_t n) const;
     std::size_t virtualPoint(std::size_t n) const;
 
   private:

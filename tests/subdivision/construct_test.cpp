@@ -354,6 +354,43 @@ TEST(TriangularMask, WithADependentColumnIsRefused) {
 // --- the quad lattice
 // ---------------------------------------------------------------------------------------
 
+// --- numbers that no machine word holds
+// -----------------------------------------------------------------------------------------------
+
+Integer largestDenominator(const Diagram& diagram) {
+    Integer most = 1;
+    for (const auto& [node, value] : diagram) most = std::max(most, Integer(denominator(value)));
+    return most;
+}
+
+// A P, column by column, without prove(): 1 at the own vertex node, 0 at all others that the row reaches.
+bool undoes(const Diagram& a, const Diagram& p, int reach) {
+    for (int t = -reach; t <= reach; ++t) {
+        if (inner(a, p.shifted(at(2 * t))) != (t == 0 ? 1 : 0)) return false;
+    }
+    return true;
+}
+
+// The denominators of the wide cubic filters pass 2^53 (a double's digits) at 39 taps, 2^59 at 43 and 2^64 at 47: still
+// exact, and no longer so as soon as the taps are rounded to doubles.
+TEST(ExactArithmetic, HoldsWhereDenominatorsOutgrowDoublesAndSixtyFourBits) {
+    const Mask cubic = namedMask("cubic");
+    const Integer one = 1;
+    for (const auto& [width, bits] : {std::pair(39, 53), {43, 59}, {47, 64}}) {
+        const Filters f = construct(cubic, width);
+        EXPECT_GT(largestDenominator(f.a), one << bits) << width;
+        EXPECT_TRUE(undoes(f.a, cubic.p, width)) << width;
+        EXPECT_TRUE(prove(f)) << width;
+        Diagram rounded;
+        for (const auto& [node, value] : f.a) rounded.add(node, Rational(toDouble(value)));
+        EXPECT_FALSE(undoes(rounded, cubic.p, width)) << width;
+        Filters wrong = f;
+        wrong.a = rounded;
+        EXPECT_FALSE(prove(wrong)) << width;
+    }
+    EXPECT_EQ(largestDenominator(construct(cubic, 47).a), Integer("73275655646637026968"));
+}
+
 TEST(CatmullClark, RegularFiltersAreProductsOfTheCubicOnes) {
     const Filters f = construct(namedMask("catmull-clark"), 1);
     EXPECT_EQ(f.a[{}], 4);
