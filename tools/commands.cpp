@@ -89,13 +89,14 @@ Value choice(const std::string& text, const std::array<std::pair<std::string_vie
 
 // ---- the table ----
 
-constexpr std::string_view kOutput = "lod analyse mesh field curve-levels relief curves";
+constexpr std::string_view kOutput =
+    "lod analyse mesh field curve-levels relief reverse rebuild subdivide curves";
 constexpr std::string_view kFit = "lod analyse mesh field";  // those that turn an input into a field
 constexpr std::string_view kShaped = "lod analyse mesh field curves";  // those that fit a field
 constexpr std::string_view kImages = "lod analyse mesh field info";    // those that read images
 constexpr std::string_view kAll = "lod analyse mesh field info check compare curves";
 constexpr std::string_view kQuiet =
-    "lod analyse mesh field info check compare curves filters curve-levels relief";
+    "lod analyse mesh field info check compare curves filters curve-levels relief reverse rebuild subdivide";
 
 constexpr Command kCommands[] = {
     {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
@@ -154,6 +155,23 @@ constexpr Command kCommands[] = {
      "coarsest "
      "level subdivided back, without details) and reconstructed.npy.",
      true, runRelief},
+    {"reverse", "MESH", "a mesh with subdivision connectivity -> a coarse base mesh and details, losslessly",
+     "MESH (OBJ, OFF, PLY) is one that subdivision has made, moved points and all: catmull-clark finds the "
+     "polygons "
+     "inside a mesh of quads, loop and butterfly the triangles inside one of triangles; vertices and faces "
+     "may come "
+     "in any order. -o BASE is the coarse mesh, --details FILE everything that is needed to have MESH back. "
+     "Marked "
+     "creases ('t crease 2/1/0 V1 V2 SHARPNESS', vertices counted from 0) and boundaries are curves of their "
+     "own.",
+     true, runReverse},
+    {"rebuild", "BASE", "a base mesh and its details -> the mesh at any level, edited or simplified",
+     "BASE and --details FILE come from reverse. --edited BASE2 is BASE with moved vertices: the details "
+     "follow. "
+     "--threshold and --keep leave short details out and measure what that costs.",
+     true, runRebuild},
+    {"subdivide", "MESH", "a polygon mesh -> the same, subdivided by Catmull-Clark, Loop or Butterfly",
+     "MESH is OBJ, OFF or PLY; so is the output, by its name.", true, runSubdivide},
     {"curves", "INPUT", "a bitmap or polygons -> a ladder of closed planar curves, one a level",
      "INPUT is an image (PNG, TIFF, BMP, PGM, PBM) or polygons (GeoJSON, TopoJSON, text with rings as lines "
      "'x y'). -o out/africa makes the folder out/africa with africa_L0.svg, africa_L1.svg, ...; a level at "
@@ -188,6 +206,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypes{{{
                                                                                {"uint32", "uint32"},
                                                                                {"float32", "float32"},
                                                                                {"float64", "float64"}}};
+constexpr int kMostSubdivisions = 15;  // a quad becomes 2^30
 constexpr std::int64_t kHuge = std::int64_t{1} << 40;
 
 constexpr Option kOptions[] = {
@@ -250,7 +269,8 @@ constexpr Option kOptions[] = {
          if (v.empty()) throw UsageError("the name is empty");
          s.jsonFile = v;
      }},
-    {"--json", "", "", "print JSON instead of text", "info check compare filters curve-levels relief",
+    {"--json", "", "", "print JSON instead of text",
+     "info check compare filters curve-levels relief reverse rebuild subdivide",
      [](Settings& s, const std::string&) { s.json = true; }},
 
     // What the solid is.
@@ -351,6 +371,49 @@ constexpr Option kOptions[] = {
              v, std::array<std::pair<std::string_view, bool>, 2>{{{"rows", false}, {"quincunx", true}}});
      }},
     {"--table", "", "", "compare the schemes' errors too", "curve-levels relief",
+     [](Settings& s, const std::string&) { s.table = true; }},
+
+    // Meshes with subdivision connectivity.
+    {"--levels", "N", "as many as there are", "how many levels coarser", "reverse",
+     [](Settings& s, const std::string& v) { s.depth = static_cast<int>(integer(v, 0, kMostSubdivisions)); }},
+    {"--levels", "N", "all", "how many subdivisions finer than BASE; finer details are not even read", "rebuild",
+     [](Settings& s, const std::string& v) { s.depth = static_cast<int>(integer(v, 0, kMostSubdivisions)); }},
+    {"--levels", "N", "1", "how many subdivisions", "subdivide",
+     [](Settings& s, const std::string& v) { s.depth = static_cast<int>(integer(v, 0, kMostSubdivisions)); }},
+    {"--scheme", "NAME", "catmull-clark", "catmull-clark, loop or butterfly", "reverse subdivide",
+     [](Settings& s, const std::string& v) { s.scheme = v; }},
+    {"--variant", "NAME", "the first",
+     "how the coarse mesh is fitted; catmull-clark: refined, trial, unscaled, tensor, wide; "
+     "loop, butterfly: refined, trial, wide",
+     "reverse", [](Settings& s, const std::string& v) { s.variant = v; }},
+    {"--crease", "ANGLE", "", "edges that fold by more than ANGLE degrees are creases too (catmull-clark)",
+     "reverse subdivide",
+     [](Settings& s, const std::string& v) {
+         s.creaseAngle = number(v);
+         if (*s.creaseAngle < 0 || *s.creaseAngle > 180) throw UsageError("'" + v + "' is not between 0 and 180");
+     }},
+    {"--details", "FILE", "", "reverse writes the details into this file; rebuild, which needs it, reads them",
+     "reverse rebuild",
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.details = v;
+     }},
+    {"--edited", "FILE", "", "BASE with moved vertices, which takes its place", "rebuild",
+     [](Settings& s, const std::string& v) {
+         if (v.empty()) throw UsageError("the name is empty");
+         s.edited = v;
+     }},
+    {"--frames", "global|local", "global",
+     "details keep their direction in space, or turn with the surface (--edited)", "rebuild",
+     [](Settings& s, const std::string& v) {
+         s.frames = choice(v, std::array<std::pair<std::string_view, subdivision::Frames>, 2>{
+                                  {{"global", subdivision::Frames::global}, {"local", subdivision::Frames::local}}});
+     }},
+    {"--threshold", "LEN", "", "leave out details shorter than this, in the units of the mesh", "rebuild",
+     [](Settings& s, const std::string& v) { s.threshold = positive(v); }},
+    {"--keep", "N", "", "only the N longest details", "rebuild",
+     [](Settings& s, const std::string& v) { s.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); }},
+    {"--table", "", "", "the error that is left with the longest 0 to 50 % of the details", "rebuild",
      [](Settings& s, const std::string&) { s.table = true; }},
 
     // How the job runs.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "polygonize/mesh_writer.h"
+#include "subdivision/hierarchy_edit.h"
 
 namespace isowave::tools {
 
@@ -85,6 +86,11 @@ struct Settings {
     bool boundary = false;
     bool table = false;
     std::optional<std::filesystem::path> svg;
+    // reverse, rebuild, subdivide.
+    std::optional<std::filesystem::path> details, edited;
+    std::optional<std::string> variant;
+    std::optional<double> creaseAngle;  // degrees
+    std::optional<subdivision::Frames> frames;
     // Planar curves.
     std::optional<std::int32_t> pixels;  // along the longer side of the polygons
     std::optional<CurveFormat> curveFormat;

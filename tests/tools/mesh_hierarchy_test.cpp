@@ -1,0 +1,265 @@
+// reverse, rebuild, subdivide: the program itself on real cages and on bad input.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/tools/run_isowave.h"
+
+namespace isowave::tools_test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kCages = std::string(ISOWAVE_TEST_DATA) + "/subdiv/";
+
+std::string in(const Folder& folder, const std::string& name) { return (folder / name).string(); }
+
+// The numbers of all `v` lines, and all `f` lines as they are.
+struct Obj {
+    std::vector<double> points;
+    std::vector<std::string> faces;
+};
+Obj readObj(const fs::path& path) {
+    Obj obj;
+    std::istringstream lines(contentOf(path));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("f ", 0) == 0) obj.faces.push_back(line);
+        if (line.rfind("v ", 0) != 0) continue;
+        std::istringstream numbers(line.substr(2));
+        for (double x; numbers >> x;) obj.points.push_back(x);
+    }
+    return obj;
+}
+double largestDifference(const Obj& a, const Obj& b) {
+    if (a.points.size() != b.points.size()) return INFINITY;
+    double most = 0;
+    for (std::size_t i = 0; i < a.points.size(); ++i)
+        most = std::max(most, std::abs(a.points[i] - b.points[i]));
+    return most;
+}
+
+// Every number moved a little, the same way each time.
+void roughen(const fs::path& from, const fs::path& to) {
+    std::istringstream lines(contentOf(from));
+    std::ofstream out(to);
+    unsigned state = 1;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("v ", 0) != 0) {
+            out << line << "\n";
+            continue;
+        }
+        std::istringstream numbers(line.substr(2));
+        out << "v";
+        for (double x; numbers >> x;) {
+            state = state * 1664525u + 1013904223u;
+            out << ' ' << x + 0.002 * (state / 4294967296.0 - 0.5);
+        }
+        out << "\n";
+    }
+}
+
+TEST(Reverse, TakesACarApartAndRebuildPutsItBack) {
+    const Folder folder;
+    succeed({"subdivide", kCages + "catmark_car.obj", "--levels", "2", "-o", in(folder, "smooth.obj"),
+             "--quiet"});
+    roughen(folder / "smooth.obj", folder / "fine.obj");
+    const auto report = succeed({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--levels",
+                                 "2", "--details", in(folder, "car.details"), "--json"})
+                            .json();
+    EXPECT_EQ(report["levels"][0]["vertices"], 1642);
+    EXPECT_EQ(report["creases"], 314);
+    EXPECT_EQ(report["scheme"], "catmull-clark");
+    EXPECT_LT(report["levels"][1]["without_details"]["rms"], report["levels"][0]["without_details"]["rms"]);
+    succeed({"rebuild", in(folder, "base.obj"), "--details", in(folder, "car.details"), "-o",
+             in(folder, "back.obj")});
+    const Obj fine = readObj(folder / "fine.obj"), back = readObj(folder / "back.obj");
+    EXPECT_LT(largestDifference(fine, back), 1e-11);
+    EXPECT_EQ(fine.faces, back.faces) << "the same faces in the same order";
+    // A level between, in another format.
+    const auto middle = succeed({"rebuild", in(folder, "base.obj"), "--details", in(folder, "car.details"),
+                                 "--levels", "1", "-o", in(folder, "new/middle.ply"), "--json"})
+                            .json();
+    EXPECT_EQ(middle["vertices"], report["levels"][1]["vertices"]);
+    EXPECT_TRUE(fs::exists(folder / "new/middle.ply"));
+}
+
+TEST(Reverse, FindsACageAgain) {
+    const Folder folder;
+    for (const char* cage : {"catmark_rook.obj", "catmark_torus.obj"}) {
+        succeed({"subdivide", kCages + cage, "--levels", "2", "-o", in(folder, "fine.off")});
+        succeed(
+            {"reverse", in(folder, "fine.off"), "-o", in(folder, "base.obj"), "--levels", "2", "--quiet"});
+        EXPECT_LT(largestDifference(readObj(kCages + cage), readObj(folder / "base.obj")), 1e-12) << cage;
+    }
+}
+
+TEST(Rebuild, FollowsAnEditAndLeavesDetailsOut) {
+    const Folder folder;
+    succeed({"subdivide", kCages + "catmark_torus.obj", "--levels", "3", "-o", in(folder, "smooth.obj")});
+    roughen(folder / "smooth.obj", folder / "fine.obj");
+    const std::string base = in(folder, "base.obj"), details = in(folder, "d"), out = in(folder, "out.obj");
+    succeed({"reverse", in(folder, "fine.obj"), "-o", base, "--levels", "3", "--details", details,
+             "--variant", "tensor"});
+    // Turned by 90 degrees about z: local frames give the mesh turned, global ones something else.
+    std::istringstream lines(contentOf(base));
+    std::ofstream edited(folder / "edited.obj");
+    for (std::string line; std::getline(lines, line);) {
+        double x = 0, y = 0, z = 0;
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) {
+            edited << line << "\n";
+            continue;
+        }
+        char text[120];
+        std::snprintf(text, sizeof text, "v %.17g %.17g %.17g\n", -y, x, z);
+        edited << text;
+    }
+    edited.close();
+    Obj expected = readObj(folder / "fine.obj");
+    for (std::size_t i = 0; i < expected.points.size(); i += 3) {
+        std::swap(expected.points[i], expected.points[i + 1]);
+        expected.points[i] = -expected.points[i];
+    }
+    const std::vector<std::string> command{"rebuild", base, "--details", details,
+                                           "-o",      out,  "--edited",  in(folder, "edited.obj")};
+    auto local = command;
+    local.insert(local.end(), {"--frames", "local"});
+    succeed(local);
+    EXPECT_LT(largestDifference(expected, readObj(out)), 1e-12);
+    succeed(command);
+    EXPECT_GT(largestDifference(expected, readObj(out)), 1e-4);
+
+    const auto part =
+        succeed({"rebuild", base, "--details", details, "-o", out, "--keep", "100", "--table", "--json"})
+            .json();
+    EXPECT_EQ(part["kept"], 100);
+    EXPECT_GT(part["error"]["rms"], 0);
+    EXPECT_EQ(part["shares"].size(), 7u);
+    EXPECT_LT(part["shares"][6]["error"]["rms"], part["shares"][0]["error"]["rms"]);
+    EXPECT_THAT(succeed({"rebuild", base, "--details", details, "-o", out, "--threshold", "0.0005"}).out,
+                HasSubstr("without the others rms"));
+}
+
+TEST(Reverse, TakesTrianglesApartToo) {
+    const Folder folder;
+    const std::string icosahedron = in(folder, "a.off");
+    std::ofstream(icosahedron)
+        << "OFF\n4 4 0\n1 1 1\n1 -1 -1\n-1 1 -1\n-1 -1 1\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n";
+    for (const char* scheme : {"loop", "butterfly"}) {
+        succeed(
+            {"subdivide", icosahedron, "--levels", "3", "--scheme", scheme, "-o", in(folder, "fine.obj")});
+        const auto report =
+            succeed({"reverse", in(folder, "fine.obj"), "--scheme", scheme, "-o", in(folder, "base.obj"),
+                     "--levels", "2", "--details", in(folder, "d"), "--json"})
+                .json();
+        EXPECT_LT(report["levels"][0]["detail_largest"], 1e-12) << scheme;
+        succeed(
+            {"rebuild", in(folder, "base.obj"), "--details", in(folder, "d"), "-o", in(folder, "back.obj")});
+        EXPECT_LT(largestDifference(readObj(folder / "fine.obj"), readObj(folder / "back.obj")), 1e-12)
+            << scheme;
+    }
+}
+
+TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
+    const Folder folder;
+    const std::string car = kCages + "catmark_car.obj", torus = kCages + "catmark_torus.obj";
+    const std::string fine = in(folder, "fine.obj"), base = in(folder, "base.obj"),
+                      details = in(folder, "torus.details"), out = in(folder, "out.obj");
+    succeed({"subdivide", torus, "--levels", "1", "-o", fine});
+    succeed({"reverse", fine, "-o", base, "--levels", "1", "--details", details, "--quiet"});
+    const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
+    std::ofstream(folder / "fin.obj") << quad << "f 1 2 3 4\nf 2 5 6 3\nf 2 3 4\n";
+    std::ofstream(folder / "mixed.obj") << quad << "f 1 2 3 4\nf 2 3 6 5\n";
+    std::ofstream(folder / "flat.obj") << quad << "f 1 2 3 4\nf 2 5 6 2\n";
+    std::ofstream(folder / "text.obj") << "v 0 0 zero\n";
+    std::ofstream(folder / "moved.obj") << contentOf(base).replace(0, 4, "v 9.");
+    std::string damaged = contentOf(details);
+    damaged[damaged.size() / 2] = char(damaged[damaged.size() / 2] ^ 1);
+    std::ofstream(folder / "damaged.details", std::ios::binary) << damaged;
+    std::ofstream(folder / "cut.details", std::ios::binary)
+        << contentOf(details).substr(0, damaged.size() - 100);
+    const struct {
+        std::vector<std::string> arguments;
+        int code;
+        const char* says;
+    } cases[] = {
+        {{"reverse", in(folder, "none.obj"), "-o", out}, 3, "no such file"},
+        {{"reverse", in(folder, "fin.obj"), "-o", out}, 3, "more than two faces"},
+        {{"reverse", in(folder, "mixed.obj"), "-o", out}, 3, "mixed orientation"},
+        {{"reverse", in(folder, "flat.obj"), "-o", out}, 3, "1 face is degenerate"},
+        {{"reverse", in(folder, "text.obj"), "-o", out}, 3, "line 1: 'zero' is not a coordinate"},
+        {{"reverse", car, "-o", out}, 3, "no Catmull-Clark connectivity: vertex"},
+        {{"reverse", fine, "-o", out, "--levels", "9"}, 3, "but not for 9"},
+        {{"reverse", fine, "-o", out, "--scheme", "doo-sabin"}, 3, "they are catmull-clark, loop, butterfly"},
+        {{"reverse", fine, "-o", out, "--variant", "best"}, 3, "they are refined, trial"},
+        {{"reverse", fine, "-o", in(folder, "out.stl")}, 3, ".obj .off .ply"},
+        {{"reverse", fine, "-o", out, "--crease", "200"}, 2, "--crease"},
+        {{"reverse", fine, "-o", out, "--scheme", "loop", "--crease", "30"}, 2, "--crease"},
+        {{"reverse", fine}, 2, "-o"},
+        {{"reverse", fine, "-o", out, "--details", fine}, 2, "what this command reads"},
+        {{"reverse", fine, "-o", out, "--details", out}, 2, "--details"},
+        {{"rebuild", base, "--details", details, "-o", base}, 2, "what this command reads"},
+        {{"rebuild", base, "--details", details, "--edited", fine, "-o", fine}, 2, "what this command reads"},
+        {{"rebuild", base, "-o", out}, 2, "--details: is needed"},
+        {{"rebuild", base, "--details", fine, "-o", out}, 3, "holds no details of a mesh"},
+        {{"rebuild", base, "--details", in(folder, "damaged.details"), "-o", out}, 3, "is damaged"},
+        {{"rebuild", base, "--details", in(folder, "cut.details"), "-o", out}, 3, "truncated"},
+        {{"rebuild", car, "--details", details, "-o", out}, 3, "another connectivity"},
+        {{"rebuild", in(folder, "moved.obj"), "--details", details, "-o", out}, 3, "--edited"},
+        {{"rebuild", base, "--details", details, "--edited", fine, "-o", out}, 3, "another connectivity"},
+        {{"rebuild", base, "--details", details, "--levels", "5", "-o", out}, 3, "holds details for 1 level"},
+        {{"rebuild", base, "--details", details, "--frames", "local", "-o", out}, 2, "--edited"},
+        {{"rebuild", base, "--details", details, "--keep", "1", "--threshold", "1", "-o", out},
+         2,
+         "one of them"},
+        {{"subdivide", in(folder, "mixed.obj"), "-o", out}, 3, "mixed orientation"},
+        {{"subdivide", torus, "--scheme", "loop", "-o", out}, 3, "triangle"},
+        {{"subdivide", torus, "--levels", "99", "-o", out}, 2, "--levels"},
+        {{"subdivide", torus, "-o", in(folder, "fine.obj/out.obj")}, 1, "cannot make this folder"},
+    };
+    for (const auto& each : cases) {
+        const auto before = folder.snapshot();
+        const auto result = isowave(each.arguments);
+        EXPECT_EQ(result.exitCode, each.code) << each.says << ": " << result.err;
+        EXPECT_THAT(result.err, HasSubstr(each.says));
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_EQ(folder.snapshot(), before) << each.says;
+    }
+}
+
+// Whatever is cut off or changed in an input, the answer is a mesh or one line.
+TEST(MeshHierarchyCommands, SurviveDamagedFiles) {
+    const Folder folder;
+    succeed({"subdivide", kCages + "catmark_torus.obj", "--levels", "1", "-o", in(folder, "fine.ply")});
+    succeed({"reverse", in(folder, "fine.ply"), "-o", in(folder, "base.obj"), "--details", in(folder, "d"),
+             "--quiet"});
+    for (const char* name : {"fine.ply", "d"}) {
+        const std::string bytes = contentOf(folder / name);
+        for (int part = 1; part < 10; ++part) {
+            std::string cut = bytes.substr(0, bytes.size() * part / 10);
+            const bool mesh = std::string(name) == "fine.ply";
+            std::ofstream(folder / (mesh ? "cut.ply" : "cut"), std::ios::binary) << cut;
+            const auto result = mesh ? isowave({"reverse", in(folder, "cut.ply"), "-o", in(folder, "x.obj")})
+                                     : isowave({"rebuild", in(folder, "base.obj"), "--details",
+                                                in(folder, "cut"), "-o", in(folder, "x.obj")});
+            EXPECT_EQ(result.exitCode, 3) << name << part << result.err;
+            EXPECT_EQ(result.errorLines(), 1) << result.err;
+            EXPECT_FALSE(fs::exists(folder / "x.obj"));
+        }
+    }
+}
+
+TEST(Reverse, OnAFullDiskLeavesNothing) {
+    const Folder folder;
+    succeed({"subdivide", kCages + "catmark_rook.obj", "--levels", "1", "-o", in(folder, "fine.obj")});
+    const auto before = folder.snapshot();
+    RunOptions full;
+    full.largestFile = 20'000;
+    const auto result = isowave({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--levels",
+                                 "1", "--details", in(folder, "d")},
+                                full);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_EQ(folder.snapshot(), before);
+}
+
+}  // namespace
+}  // namespace isowave::tools_test
