@@ -18,6 +18,10 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kLargest = 1e9;
+// Collections of collections: real files have three or four; each is one call deep in the reader.
+constexpr int kDeepestCollection = 100;
+// Editors on Windows put it before UTF-8.
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 // Takes rings as they come from a file, checks and repairs them.
 class Collector {
@@ -110,15 +114,18 @@ class JsonReader {
         return type != object.end() && type->is_string() ? type->get<std::string>() : "nothing";
     }
 
-    void readObject(const Json& object) {
+    void readObject(const Json& object, int depth = 0) {
         if (object.is_null()) return;
+        if (depth > kDeepestCollection)
+            throw InputError(out_.name(),
+                             fmt::format("nests collections more than {} deep", kDeepestCollection));
         const std::string type = typeOf(object);
         if (type == "FeatureCollection")
-            for (const Json& feature : list(object, "features")) readObject(feature);
+            for (const Json& feature : list(object, "features")) readObject(feature, depth + 1);
         else if (type == "GeometryCollection")
-            for (const Json& geometry : list(object, "geometries")) readObject(geometry);
+            for (const Json& geometry : list(object, "geometries")) readObject(geometry, depth + 1);
         else if (type == "Feature")
-            readObject(object.value("geometry", Json()));
+            readObject(object.value("geometry", Json()), depth + 1);
         else if (type == "Polygon")
             readPolygon(list(object, pointsKey()));
         else if (type == "MultiPolygon")
@@ -324,7 +331,8 @@ PolygonInput readPolygons(const std::filesystem::path& path) {
     const std::string name = path.string();
     std::ifstream stream(path, std::ios::binary);
     if (!stream || std::filesystem::is_directory(path)) throw InputError(name, "cannot be read");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == std::string::npos) throw InputError(name, "is empty; expected polygons");
     Collector out(name);

@@ -79,7 +79,8 @@ bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' ||
 std::vector<Polyline> parseText(const std::string& text, const std::string& name) {
     std::vector<Polyline> curves;
     Collector collector(name);
-    std::istringstream lines(text);
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // editors on Windows put it before UTF-8
+    std::istringstream lines(text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text);
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
         line = line.substr(0, line.find('#'));
@@ -136,6 +137,9 @@ std::string writeText(const std::vector<Polyline>& curves) {
 // --- GeoJSON
 // ------------------------------------------------------------------------------------------------
 
+// Collections of collections: real files have three or four; each is one call deep in the reader.
+constexpr int kDeepestCollection = 100;
+
 struct GeoJsonReader {
     const std::string& name;
     std::vector<Polyline>& curves;
@@ -165,17 +169,24 @@ struct GeoJsonReader {
 
     void list(const Json& coordinates, const Json::json_pointer& where, int depth, bool ring) {
         if (depth == 0) return curve(coordinates, where, ring);
+        if (!coordinates.is_array() && !coordinates.is_null()) {
+            throw InputError(name + ": " + where.to_string(),
+                             ring ? "is not a list of rings" : "is not a list of lines");
+        }
         for (std::size_t k = 0; k < coordinates.size(); ++k) list(coordinates[k], where / k, depth - 1, ring);
     }
 
-    void object(const Json& value, const Json::json_pointer& where) {
+    void object(const Json& value, const Json::json_pointer& where, int depth = 0) {
+        if (depth > kDeepestCollection)
+            throw InputError(name, fmt::format("nests collections more than {} deep", kDeepestCollection));
         if (!value.is_object() || !value.contains("type") || !value["type"].is_string()) return;
         const std::string type = value["type"];
         for (const char* part : {"features", "geometries"}) {
             if (!value.contains(part) || !value[part].is_array()) continue;
-            for (std::size_t k = 0; k < value[part].size(); ++k) object(value[part][k], where / part / k);
+            for (std::size_t k = 0; k < value[part].size(); ++k)
+                object(value[part][k], where / part / k, depth + 1);
         }
-        if (value.contains("geometry")) object(value["geometry"], where / "geometry");
+        if (value.contains("geometry")) object(value["geometry"], where / "geometry", depth + 1);
         if (!value.contains("coordinates")) return;
         const auto coordinates = where / "coordinates";
         if (type == "LineString") list(value["coordinates"], coordinates, 0, false);

@@ -278,6 +278,13 @@ TEST_F(Polygons, TextOfRings) {
     EXPECT_THAT(input.remarks, IsEmpty());
 }
 
+TEST_F(Polygons, AByteOrderMarkIsPassedOver) {
+    const std::string mark = "\xef\xbb\xbf";
+    const std::string json = "{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[4,0],[4,3],[0,0]]]}";
+    EXPECT_EQ(readPolygons(file("mark.json", mark + json)).pointCount(), 3u);
+    EXPECT_EQ(readPolygons(file("mark.txt", mark + "0 0\r\n4 0\r\n4 3\r\n")).pointCount(), 3u);
+}
+
 TEST_F(Polygons, WhatIsRepairedIsSaidWithItsRing) {
     const auto remark = [&](const std::string& rings) {
         const PolygonInput input =
@@ -306,6 +313,9 @@ TEST_F(Polygons, BadOnesAreRefusedInOneLine) {
                 HasSubstr("polygon 0, ring 0: point 1"));
     EXPECT_THAT(error("a.json", "{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[1e99,1],[2,2]]]}"),
                 HasSubstr("point 1 is (1e+99, 1)"));
+    std::string deep = "{\"type\":\"Point\"}";
+    for (int k = 0; k < 1000; ++k) deep = "{\"type\":\"GeometryCollection\",\"geometries\":[" + deep + "]}";
+    EXPECT_THAT(error("a.json", deep), HasSubstr("nests collections more than 100 deep"));
     EXPECT_THAT(error("a.txt", "0 0\n1 nan\n2 2\n"), HasSubstr("coordinates up to 1e9"));
     EXPECT_THAT(error("a.txt", "0 0\nhello\n"), HasSubstr("line 2: 'hello'"));
     EXPECT_THAT(errorOf([&] { readInput(file("thin.txt", "0 0\n100 0.001\n100 0\n"), {.pixels = 10}); }),

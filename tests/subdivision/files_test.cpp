@@ -61,6 +61,15 @@ TEST(CurveText, KeepsEveryBitOfANumber) {
     EXPECT_EQ(CurveFile::parse(file.with(file.curves()), ".txt", "t").curves()[0].coordinates[2], value);
 }
 
+TEST(CurveText, AByteOrderMarkIsNoPartOfTheFirstNumber) {
+    EXPECT_EQ(CurveFile::parse("\xef\xbb\xbf"
+                               "1 2\r\n3 4\r\n",
+                               ".txt", "t.txt")
+                  .curves()[0]
+                  .coordinates,
+              (std::vector<double>{1, 2, 3, 4}));
+}
+
 TEST(CurveText, BadLinesAreNamed) {
     const auto tell = [](const char* text) {
         return complaint([&] { CurveFile::parse(text, ".txt", "t.txt"); });
@@ -109,6 +118,14 @@ TEST(CurveGeoJson, BadPositionsAreNamed) {
                 HasSubstr("/coordinates/1/1: is not a number"));
     EXPECT_THAT(tell(R"({"type":"LineString","coordinates":[[0,0],[1]]})"),
                 HasSubstr("/coordinates/1: is not a position"));
+    // Not the JSON library's own words, which name no place.
+    EXPECT_THAT(tell(R"({"type":"Polygon","coordinates":{"a":1}})"),
+                HasSubstr("g.json: /coordinates: is not a list of rings"));
+    EXPECT_THAT(tell(R"({"type":"MultiLineString","coordinates":5})"),
+                HasSubstr("g.json: /coordinates: is not a list of lines"));
+    std::string deep = R"({"type":"Point"})";
+    for (int k = 0; k < 1000; ++k) deep = R"({"type":"GeometryCollection","geometries":[)" + deep + "]}";
+    EXPECT_THAT(tell(deep.c_str()), HasSubstr("nests collections more than 100 deep"));
     EXPECT_THAT(tell(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("holds no curve"));
 }
 
