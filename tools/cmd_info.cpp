@@ -39,9 +39,10 @@ std::string triples(const Json& v) {
 // ---- images ----
 
 Description describeImage(const fs::path& path, const Settings& settings, Console& console) {
-    const Image image = readImage(path, imageReadOptions(settings), console.progress());
+    ImageStream stream(path, imageReadOptions(settings));
+    const ImageStatistics statistics = statisticsOf(stream, {}, console.progress());
+    const Image& image = stream.header();
     for (const std::string& warning : image.warnings) console.say(warning);
-    const ImageStatistics statistics = statisticsOf(image);
 
     Description d{start(path, "image"), {}};
     Json& json = d.json;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <set>
 
 #include "base/error.h"
 #include "volume/distance.h"
@@ -19,9 +18,6 @@
 namespace isowave::tools {
 namespace fs = std::filesystem;
 namespace {
-
-// At most so many distinct non-negative whole numbers make a label image.
-constexpr std::size_t kMaxLabels = 64;
 
 // Voxels along the longest axis of a mesh when nothing is said.
 constexpr std::int64_t kDefaultVoxels = 256;
@@ -217,26 +213,23 @@ void refuseRoundedLabel(const Image& image, const std::string& name, double labe
                                        label, kExact));
 }
 
-// --label L: the image becomes 1 where it was L and 0 elsewhere.
-ImagePlan isolateLabel(Image& image, const ImageStatistics& statistics, const std::string& name,
+ImagePlan planForLabel(const Image& image, const ImageStatistics& statistics, const std::string& name,
                        double label) {
     refuseRoundedLabel(image, name, label);
-    const auto wanted = static_cast<float>(label);
-    if (std::find(image.values.begin(), image.values.end(), wanted) == image.values.end())
+    if (!statistics.found)
         throw InputError(name, statistics.distinct.empty()
                                    ? fmt::format("no voxel has the value {:g}; values run from {:g} to {:g}",
                                                  label, statistics.low, statistics.high)
                                    : fmt::format("no voxel has the label {:g}; labels found: {}", label,
                                                  labelList(statistics.distinct)));
-    for (float& value : image.values) value = value == wanted ? 1.f : 0.f;
     return {"labels", 0.5, FitMethod::binary};
 }
 
-ImagePlan planFor(Image& image, const ImageStatistics& statistics, const std::string& name,
+ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const std::string& name,
                   const Settings& settings, Console& console) {
     if (settings.label && settings.iso)
         throw UsageError("--label and --iso exclude each other; give one of them");
-    if (settings.label) return isolateLabel(image, statistics, name, *settings.label);
+    if (settings.label) return planForLabel(image, statistics, name, *settings.label);
     if (statistics.low == statistics.high)
         throw InputError(name,
                          fmt::format("every voxel has the value {:g}; there is no surface", statistics.low));
@@ -314,32 +307,37 @@ std::optional<Solid::Border> borderOf(const Json& input) {
 Solid loadImageSolid(const fs::path& path, const Settings& settings, Console& console, StageClock& clock) {
     const std::string name = path.string();
     Solid solid;
-    Image image;
+    std::optional<ImageStream> stream;
     ImageStatistics statistics;
     {
         const StageClock::Scope scope(clock, "read");
-        image = readImage(path, imageReadOptions(settings), console.progress());
-        for (const std::string& warning : image.warnings) console.say(warning);
-        statistics = statisticsOf(image);
+        stream.emplace(path, imageReadOptions(settings));
+        std::optional<float> wanted;
+        if (settings.label) wanted = static_cast<float>(*settings.label);
+        statistics = statisticsOf(*stream, wanted, console.progress());
+        for (const std::string& warning : stream->header().warnings) console.say(warning);
     }
+    const Image image = stream->header();
     const ImagePlan plan = planFor(image, statistics, name, settings, console);
     const Fitting fitting = fittingOf(settings, plan.fit);
     console.say(fmt::format("{}: {}x{}x{} voxels of {:.4g} x {:.4g} x {:.4g} mm, {}, {} fit", name,
                             image.size[0], image.size[1], image.size[2], image.spacing()[0],
                             image.spacing()[1], image.spacing()[2], plan.kind, nameOf(fitting.method)));
 
-    const ImageSolid shape{.iso = plan.iso, .invert = settings.invert, .openBorder = settings.openBorder};
-    const auto release = [&] { image.values = {}; };
+    const ImageSolid shape{.iso = plan.iso,
+                           .invert = settings.invert,
+                           .label = settings.label,
+                           .openBorder = settings.openBorder};
     fit(
         solid, fitting,
         [&] {
-            auto nodes = nodesFromImage(image, shape, console.progress());
-            release();
+            auto nodes = nodesFromImage(*stream, shape, console.progress());
+            stream.reset();
             return nodes;
         },
         [&] {
-            auto grid = distanceFromImage(image, shape, fitting.distance.halfWidth, console.progress());
-            release();
+            auto grid = distanceFromImage(*stream, shape, fitting.distance.halfWidth, console.progress());
+            stream.reset();
             return grid;
         },
         [&](double bytes) { refuseTooLarge(name, bytes, settings, "crop or downsample it"); }, console,
@@ -644,36 +642,6 @@ Json directionOf(const Image& image) {
         rows.push_back({row[0] / spacing[axis], row[1] / spacing[axis], row[2] / spacing[axis]});
     }
     return rows;
-}
-
-ImageStatistics statisticsOf(const Image& image) {
-    ImageStatistics statistics;
-    const auto& values = image.values;
-    if (values.empty()) return statistics;
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    statistics.low = *low;
-    statistics.high = *high;
-
-    std::set<float> distinct;
-    float previous = values.front();
-    distinct.insert(previous);
-    for (const float value : values) {
-        if (value == previous) continue;
-        previous = value;
-        if (distinct.insert(value).second && distinct.size() > kMaxLabels) break;
-    }
-    if (distinct.size() <= kMaxLabels) statistics.distinct.assign(distinct.begin(), distinct.end());
-
-    // 4 M voxels give every percentile to a small fraction of a percent.
-    const std::size_t stride = std::max<std::size_t>(1, values.size() >> 22);
-    std::vector<float> sample;
-    for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
-    for (const int percent : {1, 5, 25, 50, 75, 95, 99}) {
-        const auto nth = sample.begin() + static_cast<std::ptrdiff_t>((sample.size() - 1) * percent / 100);
-        std::nth_element(sample.begin(), nth, sample.end());
-        statistics.percentiles.emplace_back(percent, *nth);
-    }
-    return statistics;
 }
 
 std::string rangeText(const ImageStatistics& statistics) {

@@ -17,7 +17,7 @@
 #include "tools/report.h"
 #include "tools/settings.h"
 #include "volume/field.h"
-#include "volume/image.h"
+#include "volume/image_stream.h"
 #include "wavelets/pyramid.h"
 
 namespace isowave::tools {
@@ -68,15 +68,6 @@ ImageReadOptions imageReadOptions(const Settings& settings);
 
 // Bytes that a job may take: --max-memory, or 70 % of the computer's (or of the container's) memory.
 double memoryLimit(const Settings& settings);
-
-// Smallest and largest value, values below which 1, 5, 25, 50, 75, 95, 99 % of the voxels lie (of every n-th
-// voxel of large images), and the distinct values when there are at most 64.
-struct ImageStatistics {
-    float low = 0, high = 0;
-    std::vector<std::pair<int, float>> percentiles;
-    std::vector<float> distinct;  // ascending; empty when there are more than 64
-};
-ImageStatistics statisticsOf(const Image& image);
 
 // World position of voxel (0,0,0), and the unit vectors along the three axes of the lattice, LPS.
 Json originOf(const Image& image);

@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "base/progress.h"
 #include "volume/field.h"
 #include "volume/image.h"
+#include "volume/image_stream.h"
 #include "volume/triangle_mesh.h"
 
 namespace isowave {
@@ -55,13 +57,19 @@ double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWid
 inline constexpr int kOpenBorder = 16;
 
 struct ImageSolid {
-    double iso = 0.5;         // inside where value > iso
-    bool invert = false;      // inside where value < iso
+    double iso = 0.5;     // inside where value > iso
+    bool invert = false;  // inside where value < iso
+    // Given: inside where value == label (with invert: where it is not) and iso means nothing. For distances, voxels
+    // count as 1 where they have the label, as 0 elsewhere, and the surface is at 0.5.
+    std::optional<double> label = {};
     bool openBorder = false;  // true: no cap; the border's values continue outwards instead of "outside"
 };
 
 // Distances, taken in index space, to the zero set of the voxels' trilinear interpolation (sub-voxel), by
-// openvdb::tools::FastSweeping. Throws InputError as linearTransform() does.
+// openvdb::tools::FastSweeping. Throws InputError as linearTransform() does, and as ImageStream::pass() does.
+// Of a stream the voxels are read twice: once for the signs, once for the values in the band around the surface.
+openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
+                                          const Progress& progress = {});
 openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
                                           const Progress& progress = {});
 
@@ -76,7 +84,8 @@ openvdb::FloatGrid::Ptr distanceFromFunction(const std::function<double(const op
 
 // Lattice point i is inside where image value > iso (or < with invert), or, with a label, where value ==
 // label. The voxels of the image are the lattice points; beyond the border everything is outside, unless
-// openBorder.
+// openBorder. A stream is read once, and gives the same as the whole image, to the bit, whatever its slabs.
+NodeCollection nodesFromImage(ImageStream& stream, const ImageSolid& solid, const Progress& progress = {});
 NodeCollection nodesFromImage(const Image& image, const ImageSolid& solid, const Progress& progress = {});
 NodeCollection nodesFromLabel(const Image& image, double label, bool openBorder = false,
                               const Progress& progress = {});

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <tuple>
 
 #include "base/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
+#include "volume/image_stream.h"
 #include "volume/linear_transform.h"
 #include "volume/tiles.h"
 
@@ -76,59 +78,134 @@ openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeColl
 // inside point is next to it.
 float strictlySigned(float excess) { return excess == 0 ? -std::numeric_limits<float>::min() : excess; }
 
-// A grid on the band with values from makeValue()(coord); elsewhere +-1 by sign, or the sweep would see a
-// surface between the band and a tile of the wrong sign.
-template <class MakeValue>
-openvdb::FloatGrid::Ptr excessOn(const openvdb::MaskTree& band, const NodeCollection& nodes,
-                                 const MakeValue& makeValue) {
+// A grid on the band, whose values are still to be set.
+openvdb::FloatGrid::Ptr bandGrid(const openvdb::MaskTree& band) {
     auto grid = openvdb::FloatGrid::create(-1.0f);
     grid->setTree(std::make_shared<openvdb::FloatTree>(band, -1.0f, openvdb::TopologyCopy()));
-    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
-    leaves.foreach ([&makeValue](FloatLeaf& leaf, std::size_t) {
-        auto value = makeValue();
-        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
-            leaf.setValueOnly(i, strictlySigned(value(leaf.offsetToGlobalCoord(i))));
-    });
+    return grid;
+}
+
+// Tiles beside the band: +-1 by sign, or the sweep would see a surface between the band and a tile of the wrong
+// sign.
+void fillBeside(openvdb::FloatTree& band, const NodeCollection& nodes) {
     const openvdb::BoolTree& inside = nodes.grid->constTree();
     const auto signAt = [&inside] {
         return [accessor = ConstAccessor<openvdb::BoolTree>(inside)](const openvdb::Coord& c) {
             return accessor.getValue(c) ? 1.0f : -1.0f;
         };
     };
-    fillTiles(grid->tree(), signAt);
+    fillTiles(band, signAt);
     fillRootTiles(
-        grid->tree(), inside, [](const openvdb::Coord& c) { return c; }, signAt);
-    return grid;
+        band, inside, [](const openvdb::Coord& c) { return c; }, signAt);
 }
 
 int reachOf(double halfWidth) { return static_cast<int>(std::ceil(halfWidth)) + 1; }
 
 }  // namespace
 
-openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress) {
-    const NodeCollection nodes = nodesFromImage(image, solid, progress);
-    progress("distances", 0);
-    const double orientation = solid.invert ? -1 : 1;
-    const auto excessAt = [&](const openvdb::Coord& c) {
-        openvdb::Coord inner;
+namespace {
+
+// value - iso, positive inside.
+class ImageExcess {
+  public:
+    ImageExcess(const Image& image, const ImageSolid& solid)
+        : size_(image.size),
+          iso_(solid.label ? 0.5 : solid.iso),
+          orientation_(solid.invert ? -1 : 1),
+          margin_(solid.openBorder ? kOpenBorder : 0) {
+        if (solid.label) label_ = static_cast<float>(*solid.label);
+    }
+
+    // value: of the nearest voxel.
+    float at(const openvdb::Coord& c, float value) const {
+        const double excess = orientation_ * ((label_ ? double(value == *label_) : double(value)) - iso_);
         bool beyond = false;
-        for (int a = 0; a < 3; ++a) {
-            inner[a] = std::clamp(c[a], 0, static_cast<int>(image.size[a]) - 1);
-            const int margin = solid.openBorder ? kOpenBorder : 0;
-            beyond = beyond || c[a] < -margin || c[a] >= image.size[a] + margin;
-        }
-        const double value = image.values[static_cast<std::size_t>(
-            inner[0] + image.size[0] * (inner[1] + image.size[1] * inner[2]))];
-        const double excess = orientation * (value - solid.iso);
+        for (int a = 0; a < 3; ++a) beyond = beyond || c[a] < -margin_ || c[a] >= size_[a] + margin_;
         // The cap: beyond the border the nearest voxel is mirrored at the iso value, so a solid that touches
         // the border ends half a voxel outside it.
-        return static_cast<float>(beyond && excess > 0 ? -excess : excess);
-    };
-    const auto band = bandAround(nodes, reachOf(halfWidth));
-    auto result = sweepBand(excessOn(band, nodes, [&] { return excessAt; }), nodes, halfWidth, progress);
+        return strictlySigned(static_cast<float>(beyond && excess > 0 ? -excess : excess));
+    }
+
+  private:
+    std::array<std::int64_t, 3> size_;
+    double iso_, orientation_;
+    int margin_;
+    std::optional<float> label_;
+};
+
+// The leaves of a band by the slices that their lattice points are nearest to.
+class BandLeaves {
+  public:
+    BandLeaves(openvdb::FloatTree& band, const Image& image) : size_(image.size) {
+        std::vector<FloatLeaf*> leaves;
+        leaves.reserve(band.leafCount());
+        band.getNodes(leaves);
+        layers_.resize(static_cast<std::size_t>((size_[2] + 7) / 8));
+        for (FloatLeaf* leaf : leaves)
+            layers_[static_cast<std::size_t>(nearest(leaf->origin()[2], 2) / 8)].push_back(leaf);
+        for (auto& layer : layers_)  // in the order of the voxels
+            std::sort(layer.begin(), layer.end(), [](const FloatLeaf* a, const FloatLeaf* b) {
+                return std::tuple(a->origin()[1], a->origin()[0]) <
+                       std::tuple(b->origin()[1], b->origin()[0]);
+            });
+    }
+
+    // Different slices write to different voxels: threads may share a leaf.
+    void fill(const Slab& slab, const ImageExcess& excess) const {
+        std::visit([&](auto voxels) { fillFrom(voxels.data(), slab.z0, slab.z1, excess); }, slab.voxels);
+    }
+
+  private:
+    std::int64_t nearest(std::int64_t c, std::size_t axis) const {
+        return std::clamp<std::int64_t>(c, 0, size_[axis] - 1);
+    }
+
+    template <class T>
+    void fillFrom(const T* voxels, std::int64_t z0, std::int64_t z1, const ImageExcess& excess) const {
+        for (std::int64_t layer = z0 / 8; layer <= (z1 - 1) / 8; ++layer)
+            for (FloatLeaf* leaf : layers_[static_cast<std::size_t>(layer)])
+                for (int k = 0; k < 8; ++k)
+                    if (const std::int64_t z = nearest(leaf->origin()[2] + k, 2); z0 <= z && z < z1)
+                        fillSlice(voxels + (z - z0) * size_[0] * size_[1], *leaf, k, excess);
+    }
+
+    template <class T>
+    void fillSlice(const T* slice, FloatLeaf& leaf, int k, const ImageExcess& excess) const {
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j) {
+                const openvdb::Coord c = leaf.origin().offsetBy(i, j, k);
+                const T value = slice[nearest(c[0], 0) + size_[0] * nearest(c[1], 1)];
+                leaf.setValueOnly(static_cast<openvdb::Index>(i << 6 | j << 3 | k),
+                                  excess.at(c, static_cast<float>(value)));
+            }
+    }
+
+    std::array<std::int64_t, 3> size_;
+    std::vector<std::vector<FloatLeaf*>> layers_;  // of eight slices each
+};
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
+                                          const Progress& progress) {
+    const NodeCollection nodes = nodesFromImage(stream, solid, progress);
+    const Image& image = stream.header();
+    const ImageExcess excess(image, solid);
+    auto grid = bandGrid(bandAround(nodes, reachOf(halfWidth)));
+    if (!grid->empty()) {
+        const BandLeaves leaves(grid->tree(), image);
+        stream.pass("reading", progress, [&](const Slab& slab) { leaves.fill(slab, excess); });
+    }
+    fillBeside(grid->tree(), nodes);
+    auto result = sweepBand(std::move(grid), nodes, halfWidth, progress);
     result->setTransform(linearTransform(image.indexToWorld, "image"));
     return result;
+}
+
+openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
+                                          const Progress& progress) {
+    ImageStream stream(image);
+    return distanceFromImage(stream, solid, halfWidth, progress);
 }
 
 openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet, double iso, double halfWidth,
@@ -158,15 +235,15 @@ openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet,
         inside->tree(), tree, [](const openvdb::Coord& c) { return c; }, insideAt);
     const NodeCollection nodes = nodesFromSigns(*inside);
     progress("distances", 0);
-    const auto band = bandAround(nodes, reachOf(halfWidth));
-    auto result = sweepBand(excessOn(band, nodes,
-                                     [&] {
-                                         return [accessor = ConstAccessor<openvdb::FloatTree>(tree),
-                                                 isoValue](const openvdb::Coord& c) {
-                                             return isoValue - accessor.getValue(c);
-                                         };
-                                     }),
-                            nodes, halfWidth, progress);
+    auto excess = bandGrid(bandAround(nodes, reachOf(halfWidth)));
+    openvdb::tree::LeafManager<openvdb::FloatTree> band(excess->tree());
+    band.foreach ([&](FloatLeaf& leaf, std::size_t) {
+        const ConstAccessor<openvdb::FloatTree> accessor(tree);
+        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
+            leaf.setValueOnly(i, strictlySigned(isoValue - accessor.getValue(leaf.offsetToGlobalCoord(i))));
+    });
+    fillBeside(excess->tree(), nodes);
+    auto result = sweepBand(std::move(excess), nodes, halfWidth, progress);
     result->setTransform(levelSet.transform().copy());
     return result;
 }

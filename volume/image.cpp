@@ -128,7 +128,19 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     return kind == Kind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
 }
 
-SourcePtr open(const fs::path& path, const ImageReadOptions& options) {
+// Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
+void checkAxes(const std::string& name, const Header& header) {
+    constexpr std::int64_t kMostOnAxis = (std::int64_t(1) << 31) - 1024;
+    for (const std::int64_t n : header.size)
+        if (n > kMostOnAxis)
+            throw InputError(name, fmt::format("its size is {}; at most {} voxels along an axis are handled; "
+                                               "crop or downsample it",
+                                               sizeText(header.size), kMostOnAxis));
+}
+
+}  // namespace
+
+SourcePtr imageio::openSource(const fs::path& path, const ImageReadOptions& options) {
     const std::string name = path.string();
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -142,13 +154,14 @@ SourcePtr open(const fs::path& path, const ImageReadOptions& options) {
     try {
         SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
         settleGeometry(name, source->header, options);
+        checkAxes(name, source->header);
         return source;
     } catch (const fs::filesystem_error& e) {
         throw InputError(name, "cannot be read: " + oneLine(e.code().message()));
     }
 }
 
-Image imageOf(const Header& header) {
+Image imageio::imageOf(const Header& header) {
     Image image;
     image.size = header.size;
     for (int a = 0; a < 3; ++a) {
@@ -164,15 +177,14 @@ Image imageOf(const Header& header) {
     return image;
 }
 
-}  // namespace
-
 Image readImageHeader(const fs::path& path, const ImageReadOptions& options) {
-    return imageOf(open(path, options)->header);
+    return imageOf(openSource(path, options)->header);
 }
 
 Image readImage(const fs::path& path, const ImageReadOptions& options, const Progress& progress) {
-    const SourcePtr source = open(path, options);
-    checkMemory(path.string(), *source, options);
+    const SourcePtr source = openSource(path, options);
+    const std::size_t stored = sizeOf(source->header.type);
+    checkMemory(path.string(), *source, options, sizeof(float), stored);
     Image image = imageOf(source->header);
     image.values.resize(static_cast<std::size_t>(image.voxelCount()));
 
@@ -182,10 +194,10 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
         end = std::min(z + source->slicesPerRead, image.size[2]);
         inexact += source->read(z, end, image.values.data() + z * source->header.sliceVoxels());
     }
-    checkFinite(path.string(), image);
-    if (inexact > 0)
-        image.warnings.push_back(fmt::format("{} of {} {} voxels are too large for float32 and were rounded",
-                                             inexact, image.voxelCount(), image.componentType));
+    NotFinite notFinite;
+    notFinite.look(image.values.data(), image.voxelCount(), 0);
+    checkFinite(path.string(), image.size, notFinite);
+    if (inexact > 0) image.warnings.push_back(roundedText(inexact, image));
     progress("reading", 1);
     return image;
 }

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -46,13 +48,13 @@ double machineMemory() {
 
 }  // namespace
 
-void checkMemory(const std::string& file, const VoxelSource& source, const ImageReadOptions& options) {
+void checkMemory(const std::string& file, const VoxelSource& source, const ImageReadOptions& options,
+                 std::size_t keptBytes, std::size_t besideBytes) {
     const Header& header = source.header;
-    const auto kept =
-        static_cast<double>(byteCount(file, {header.size[0], header.size[1], header.size[2]}, 4));
+    const auto kept = static_cast<double>(byteCount(file, {header.size[0], header.size[1], header.size[2]},
+                                                    static_cast<std::int64_t>(keptBytes)));
     const double beside = static_cast<double>(header.sliceVoxels()) *
-                          static_cast<double>(source.slicesPerRead) *
-                          static_cast<double>(sizeOf(header.type));
+                          static_cast<double>(source.slicesPerRead) * static_cast<double>(besideBytes);
     const double limit = options.memoryLimit > 0 ? static_cast<double>(options.memoryLimit) : machineMemory();
     if (kept + beside > limit)
         throw InputError(file,
@@ -130,19 +132,39 @@ void settleGeometry(const std::string& file, Header& header, const ImageReadOpti
                                                header.origin[1], header.origin[2]));
 }
 
-void checkFinite(const std::string& file, const Image& image) {
-    std::int64_t bad = 0, first = -1;
-    for (std::size_t i = 0; i < image.values.size(); ++i)
-        if (!std::isfinite(image.values[i])) {
-            if (bad++ == 0) first = static_cast<std::int64_t>(i);
-        }
-    if (bad == 0) return;
-    const std::int64_t x = first % image.size[0], y = first / image.size[0] % image.size[1],
-                       z = first / (image.size[0] * image.size[1]);
+void NotFinite::look(const float* values, std::int64_t n, std::int64_t from) {
+    // The exponent's bits are all set in NaNs and infinities alone; whole pieces without one go by fast.
+    constexpr std::uint32_t kExponent = 0x7f800000;
+    const auto bad = [](float v) { return (std::bit_cast<std::uint32_t>(v) & kExponent) == kExponent; };
+    std::int64_t here = 0;
+    for (std::int64_t i = 0; i < n; ++i) here += bad(values[i]);
+    if (here == 0) return;
+    const std::int64_t at = std::find_if(values, values + n, bad) - values;
+    add({here, from + at, values[at]});
+}
+
+void NotFinite::add(const NotFinite& other) {
+    if (other.count == 0) return;
+    if (count == 0 || other.first < first) {
+        first = other.first;
+        value = other.value;
+    }
+    count += other.count;
+}
+
+void checkFinite(const std::string& file, const std::array<std::int64_t, 3>& size, const NotFinite& found) {
+    if (found.count == 0) return;
+    const std::int64_t x = found.first % size[0], y = found.first / size[0] % size[1],
+                       z = found.first / (size[0] * size[1]);
     throw InputError(
         file, fmt::format("voxel ({}, {}, {}) is {}, the first of {} that are not finite; replace them by "
                           "a number outside the object",
-                          x, y, z, image.values[static_cast<std::size_t>(first)], bad));
+                          x, y, z, found.value, found.count));
+}
+
+std::string roundedText(std::int64_t inexact, const Image& image) {
+    return fmt::format("{} of {} {} voxels are too large for float32 and were rounded", inexact,
+                       image.voxelCount(), image.componentType);
 }
 
 std::string oneLine(std::string text) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -35,6 +36,17 @@ std::optional<ValueType> valueTypeOf(std::string name) {
     const auto found = other.find(name);
     return found == other.end() ? std::nullopt : std::optional(found->second);
 }
+
+std::int64_t VoxelSource::read(std::int64_t z0, std::int64_t z1, float* out) {
+    if (header.type == ValueType::float32) return readNative(z0, z1, out), 0;
+    const std::int64_t count = (z1 - z0) * header.sliceVoxels();
+    // zeros, should a library leave some unread
+    std::vector<char> stored(static_cast<std::size_t>(count) * sizeOf(header.type));
+    readNative(z0, z1, stored.data());
+    return convert(header.type, stored.data(), count, false, out);
+}
+
+void VoxelSource::readNative(std::int64_t, std::int64_t, void*) { assert(native); }
 
 namespace {
 

@@ -16,6 +16,7 @@ struct HeaderFacts {
     std::optional<ValueType> storedType;
     std::optional<bool> integral;
     bool onePiece = true;                             // cannot be read a few slices at a time
+    std::optional<PlainData> plain;                   // where one file holds the voxels as they are
     std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite
 };
 

@@ -162,19 +162,12 @@ void readRegion(itk::ImageIOBase& io, std::int64_t z0, std::int64_t z1, void* bu
 
 class FileSource : public VoxelSource {
   public:
-    FileSource(fs::path path, itk::ImageIOBase::Pointer io) : path_(std::move(path)), io_(std::move(io)) {}
+    FileSource(fs::path path, itk::ImageIOBase::Pointer io) : path_(std::move(path)), io_(std::move(io)) {
+        native = true;
+    }
 
-    std::int64_t read(std::int64_t z0, std::int64_t z1, float* out) override {
-        std::int64_t inexact = 0;
-        reading(path_, [&] {
-            if (header.type == ValueType::float32) return readRegion(*io_, z0, z1, out);
-            const std::int64_t count = (z1 - z0) * header.sliceVoxels();
-            // zeros, should ITK leave some unread
-            std::vector<char> stored(static_cast<std::size_t>(count) * sizeOf(header.type));
-            readRegion(*io_, z0, z1, stored.data());
-            inexact = convert(header.type, stored.data(), count, false, out);
-        });
-        return inexact;
+    void readNative(std::int64_t z0, std::int64_t z1, void* out) override {
+        reading(path_, [&] { readRegion(*io_, z0, z1, out); });
     }
 
   private:
@@ -204,6 +197,13 @@ void assumeHeight(Header& header) {
     header.spacing[2] = header.spacing[0];
 }
 
+// Whether the voxels can be had without ITK: it neither rescales nor rearranges them.
+bool isPlain(const HeaderFacts& facts, const Header& header) {
+    std::int64_t voxels = 1;
+    for (const std::int64_t n : facts.size) voxels *= n;
+    return facts.plain && facts.storedType == header.type && voxels == header.sliceVoxels() * header.size[2];
+}
+
 }  // namespace
 
 SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) {
@@ -225,6 +225,7 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     if (header.format == "TIFF") assumeHeight(header);
     header.storedType = facts.storedType;
     header.integral = facts.integral;
+    if (isPlain(facts, header)) return openPlain(*facts.plain, header);
     source->slicesPerRead = header.size[2];
     if (!facts.onePiece && io->CanStreamRead())
         source->slicesPerRead = std::clamp<std::int64_t>(
@@ -239,21 +240,15 @@ namespace {
 
 class SlicesSource : public VoxelSource {
   public:
-    explicit SlicesSource(std::vector<fs::path> slices) : slices_(std::move(slices)) {}
+    explicit SlicesSource(std::vector<fs::path> slices) : slices_(std::move(slices)) { native = true; }
 
-    std::int64_t read(std::int64_t z0, std::int64_t z1, float* out) override {
-        std::int64_t inexact = 0;
-        for (std::int64_t z = z0; z < z1; ++z, out += header.sliceVoxels()) {
+    void readNative(std::int64_t z0, std::int64_t z1, void* out) override {
+        auto* bytes = static_cast<char*>(out);
+        for (std::int64_t z = z0; z < z1; ++z) {
             const fs::path& path = slices_[static_cast<std::size_t>(z)];
-            reading(path, [&] {
-                const itk::ImageIOBase::Pointer io = openSlice(path);
-                std::vector<char> stored(static_cast<std::size_t>(header.sliceVoxels()) *
-                                         sizeOf(header.type));
-                readRegion(*io, 0, 1, stored.data());
-                inexact += convert(header.type, stored.data(), header.sliceVoxels(), false, out);
-            });
+            reading(path, [&] { readRegion(*openSlice(path), 0, 1, bytes); });
+            bytes += static_cast<std::size_t>(header.sliceVoxels()) * sizeOf(header.type);
         }
-        return inexact;
     }
 
   private:

@@ -132,13 +132,14 @@ void checkMetaAscii(const fs::path& file, std::int64_t start, std::int64_t neede
                                      promise, needed, found));
 }
 
-void checkMetaData(const fs::path& path, const MetaText& text, std::int64_t count, std::int64_t bytesEach,
-                   const std::string& promise) {
+// Returns where the voxels are if they lie there as they are.
+std::optional<PlainData> checkMetaData(const fs::path& path, const MetaText& text, std::int64_t count,
+                                       std::int64_t bytesEach, const std::string& promise) {
     const std::int64_t needed = count * bytesEach;
     const std::string data = text.get("ElementDataFile"), name = path.string();
     const bool local = lower(data) == "local";
     if (data.starts_with("LIST") || data.find('%') != std::string::npos)
-        return;  // many files: MetaIO opens each
+        return std::nullopt;  // many files: MetaIO opens each
     const fs::path file = local ? path : path.parent_path() / data;
     if (!local) requireFile(path, file);
 
@@ -152,9 +153,14 @@ void checkMetaData(const fs::path& path, const MetaText& text, std::int64_t coun
         checkDeflated(file, start, needed, promise);
     } else if (!text.field.contains("BinaryData") || text.yes("BinaryData")) {
         checkPlain(file, start, needed, promise);
+        // HeaderSize -1: the voxels are what the file ends with.
+        const bool big = text.yes("BinaryDataByteOrderMSB") || text.yes("ElementByteOrderMSB");
+        const auto held = static_cast<std::int64_t>(fs::file_size(file));
+        return PlainData{file, skip < 0 ? held - needed : start, big};
     } else {
         checkMetaAscii(file, start, count, promise);
     }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -185,7 +191,8 @@ HeaderFacts checkMetaImage(const fs::path& path) {
     const std::int64_t count = byteCount(name, all, bytesEach) / bytesEach;
     checkMetaNumbers(name, text, facts.size.size());
     facts.onePiece = text.yes("CompressedData") || manyFiles(text.get("ElementDataFile"));
-    checkMetaData(path, text, count, bytesEach, fmt::format("'DimSize' says {}", sizesText(facts.size)));
+    facts.plain =
+        checkMetaData(path, text, count, bytesEach, fmt::format("'DimSize' says {}", sizesText(facts.size)));
     return facts;
 }
 

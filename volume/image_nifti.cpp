@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -36,6 +37,7 @@ class NiftiBytes {
             throw InputError(path.string(),
                              "is not a single-file NIfTI image: expected 'n+1' at byte 344 of its header");
     }
+    bool bigEndian() const { return swap_ != (std::endian::native == std::endian::big); }
     template <class T>
     T at(std::size_t offset) const {
         char value[sizeof(T)];
@@ -150,14 +152,16 @@ HeaderFacts checkNifti(const fs::path& path) {
     const auto offset = header.at<float>(108);  // vox_offset
     if (!(offset >= 0 && offset < 1e9f))
         throw InputError(name, fmt::format("its header says that voxels begin at byte {}", offset));
+    const std::int64_t start = std::max<std::int64_t>(352, static_cast<std::int64_t>(offset));
     const std::int64_t needed =
-        byteCount(name, facts.size, static_cast<std::int64_t>(sizeOf(*facts.storedType))) +
-        std::max<std::int64_t>(352, static_cast<std::int64_t>(offset));
+        start + byteCount(name, facts.size, static_cast<std::int64_t>(sizeOf(*facts.storedType)));
     const std::string promise = fmt::format("its header says {}", sizesText(facts.size));
-    if (isGzip(path))
+    if (isGzip(path)) {
         checkDeflated(path, 0, needed, promise);
-    else
+    } else {
         checkPlain(path, 0, needed, promise);
+        facts.plain = PlainData{path, start, header.bigEndian()};
+    }
     return facts;
 }
 

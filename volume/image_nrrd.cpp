@@ -90,8 +90,9 @@ void checkSpaceDirections(const std::string& file, const std::string& text) {
     }
 }
 
-void checkNrrdData(const fs::path& path, const NrrdText& text, std::int64_t needed,
-                   const std::string& promise) {
+// Returns where the voxels are if they lie there as they are.
+std::optional<PlainData> checkNrrdData(const fs::path& path, const NrrdText& text, std::int64_t needed,
+                                       const std::string& promise) {
     const std::string name = path.string();
     const auto get = [&](const std::string& key) {
         const auto found = text.field.find(key);
@@ -100,7 +101,7 @@ void checkNrrdData(const fs::path& path, const NrrdText& text, std::int64_t need
     const std::string data = get("datafile"), encoding = lower(get("encoding"));
     for (const std::string& file : text.dataFiles) requireFile(path, path.parent_path() / file);
     // "pattern%03d.raw 1 9 1" and lists: several files, whose lengths NrrdIO checks one by one.
-    if (!text.dataFiles.empty() || data.find('%') != std::string::npos) return;
+    if (!text.dataFiles.empty() || data.find('%') != std::string::npos) return std::nullopt;
     const fs::path file = data.empty() ? path : path.parent_path() / data;
     if (!data.empty()) requireFile(path, file);
     if (data.empty() && !text.complete) throw InputError(name, "its header has no end; it is truncated");
@@ -109,11 +110,16 @@ void checkNrrdData(const fs::path& path, const NrrdText& text, std::int64_t need
                        byteSkip = numberOr(name, text, "byteskip", 0);
     const std::int64_t start = data.empty() ? text.end : 0;
     if (encoding == "raw") {
-        checkPlain(file, byteSkip < 0 ? 0 : skipped(file, start, lineSkip, byteSkip), needed, promise);
+        const std::int64_t begin = byteSkip < 0 ? 0 : skipped(file, start, lineSkip, byteSkip);
+        checkPlain(file, begin, needed, promise);
+        // byte skip -1: the voxels are what the file ends with.
+        const auto held = static_cast<std::int64_t>(fs::file_size(file));
+        return PlainData{file, byteSkip < 0 ? held - needed : begin, lower(get("endian")) == "big"};
     } else if (encoding == "gzip" || encoding == "gz") {  // lines are skipped before inflating, bytes after
         checkDeflated(file, skipped(file, start, lineSkip, 0), needed + std::max<std::int64_t>(byteSkip, 0),
                       promise);
     }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -167,7 +173,7 @@ HeaderFacts checkNrrd(const fs::path& path) {
     need("encoding");
     const std::int64_t needed =
         byteCount(name, facts.size, static_cast<std::int64_t>(sizeOf(*facts.storedType)));
-    checkNrrdData(path, text, needed, fmt::format("'sizes' says {}", sizesText(facts.size)));
+    facts.plain = checkNrrdData(path, text, needed, fmt::format("'sizes' says {}", sizesText(facts.size)));
     return facts;
 }
 

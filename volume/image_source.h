@@ -2,7 +2,7 @@
 // headers.
 //
 // A reader turns a path into a VoxelSource: a header, and a way to read slices z0 <= z < z1. readImage()
-// walks over the slices and keeps them all; a reader of slabs would keep a few.
+// walks over the slices and keeps them all; ImageStream keeps a few.
 #pragma once
 
 #include <cstddef>
@@ -46,13 +46,36 @@ class VoxelSource {
     // Most slices that one read() may be asked for; fewer need less memory. size[2] where a file is one
     // piece.
     std::int64_t slicesPerRead = 1;
+    // readNative() works; then read() need not be written.
+    bool native = false;
+    // Voxels lie in a file as they are: reading them again costs no decoding, and several threads may read at
+    // once.
+    bool plain = false;
     // Reads slices z0 <= z < z1 into out, x fastest; returns how many integers float32 could not hold
     // exactly. REQUIRES: 0 <= z0 < z1 <= size[2]; a source that is one piece is asked for all of it at once.
     // Throws InputError.
-    virtual std::int64_t read(std::int64_t z0, std::int64_t z1, float* out) = 0;
+    virtual std::int64_t read(std::int64_t z0, std::int64_t z1, float* out);
+    // The same as values of header.type, in this machine's byte order. REQUIRES: native.
+    virtual void readNative(std::int64_t z0, std::int64_t z1, void* out);
+    // True only if all of these voxels are known to be 0 without reading them (a hole of a sparse file).
+    virtual bool isZero(std::int64_t, std::int64_t) { return false; }
 };
 
 using SourcePtr = std::unique_ptr<VoxelSource>;
+
+// Where voxels lie as they are, without compression: from byte `start` of `file` on, x fastest.
+struct PlainData {
+    std::filesystem::path file;
+    std::int64_t start = 0;
+    bool bigEndian = false;
+};
+// REQUIRES: the file holds as many voxels as the header says.
+SourcePtr openPlain(const PlainData& data, const Header& header);  // image_plain.cpp
+
+// Opens whatever the path is, with options.spacing settled; what readImage() and ImageStream begin with.
+SourcePtr openSource(const std::filesystem::path& path, const ImageReadOptions& options);  // image.cpp
+// A header as users see it: an Image without values.
+Image imageOf(const Header& header);
 
 // One for each kind of input; each throws InputError for what it finds wrong before reading voxels.
 SourcePtr openRaw(const std::filesystem::path& path, const ImageReadOptions& options);  // image_raw.cpp
@@ -82,16 +105,29 @@ std::string bytesText(double bytes);
 std::int64_t byteCount(const std::string& file, const std::vector<std::int64_t>& size,
                        std::int64_t bytesEach);
 
-// Throws InputError when the voxels would take more than the limit: those kept and those of one read() beside
-// them.
-void checkMemory(const std::string& file, const VoxelSource& source, const ImageReadOptions& options);
+// Throws InputError when the voxels would take more than the limit: those kept, keptBytes a voxel, and those
+// of one read() beside them, besideBytes a voxel.
+void checkMemory(const std::string& file, const VoxelSource& source, const ImageReadOptions& options,
+                 std::size_t keptBytes, std::size_t besideBytes);
 
 // Puts options.spacing in place of the header's, with warnings; then throws InputError for spacing that is
 // not positive, a direction that cannot be inverted, an origin that is not finite.
 void settleGeometry(const std::string& file, Header& header, const ImageReadOptions& options);
 
-// Throws InputError that says where the first NaN or infinity among the values is and how many there are.
-void checkFinite(const std::string& file, const Image& image);
+// NaNs and infinities among voxels, counted piece by piece.
+struct NotFinite {
+    std::int64_t count = 0;
+    std::int64_t first = -1;  // voxel number, x fastest
+    float value = 0;          // there
+
+    // count values, the first of which is voxel number `from`; pieces come in any order.
+    void look(const float* values, std::int64_t count, std::int64_t from);
+    void add(const NotFinite& other);
+};
+// Throws InputError that says where the first one is and how many there are.
+void checkFinite(const std::string& file, const std::array<std::int64_t, 3>& size, const NotFinite& found);
+// "12 of 300 int32 voxels are too large for float32 and were rounded"
+std::string roundedText(std::int64_t inexact, const Image& image);
 
 // One line of printable text, at most 200 characters, of whatever a library said.
 std::string oneLine(std::string text);

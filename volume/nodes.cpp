@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
-#include "volume/linear_transform.h"
 
 namespace isowave {
 namespace {
@@ -96,45 +95,6 @@ NodeCollection nodesFromSigns(const openvdb::BoolGrid& inside) {
 NodeCollection nodesFromFunction(const std::function<bool(const openvdb::Coord&)>& inside,
                                  const openvdb::CoordBBox& box) {
     return collect(box, [&inside] { return [&inside](const openvdb::Coord& c) { return inside(c); }; }, {});
-}
-
-namespace {
-
-// Lattice points of an image as a box; with an open border, the border's voxels continue outwards.
-openvdb::CoordBBox boxOf(const Image& image, bool openBorder) {
-    openvdb::CoordBBox box(0, 0, 0, int(image.size[0]) - 1, int(image.size[1]) - 1, int(image.size[2]) - 1);
-    if (openBorder) box.expand(kOpenBorder);
-    return box;
-}
-
-float nearestVoxel(const Image& image, const openvdb::Coord& c) {
-    const auto clamp = [&](int a) { return std::clamp<std::int64_t>(c[a], 0, image.size[a] - 1); };
-    return image
-        .values[static_cast<std::size_t>(clamp(0) + image.size[0] * (clamp(1) + image.size[1] * clamp(2)))];
-}
-
-template <class Test>
-NodeCollection nodesWhere(const Image& image, bool openBorder, const Progress& progress, const Test& test) {
-    const auto transform = linearTransform(image.indexToWorld, "image");
-    NodeCollection nodes = collect(
-        boxOf(image, openBorder),
-        [&] { return [&](const openvdb::Coord& c) { return test(nearestVoxel(image, c)); }; }, progress);
-    nodes.grid->setTransform(transform);
-    return nodes;
-}
-
-}  // namespace
-
-NodeCollection nodesFromImage(const Image& image, const ImageSolid& solid, const Progress& progress) {
-    const auto iso = static_cast<float>(solid.iso);
-    if (solid.invert)
-        return nodesWhere(image, solid.openBorder, progress, [iso](float v) { return v < iso; });
-    return nodesWhere(image, solid.openBorder, progress, [iso](float v) { return v > iso; });
-}
-
-NodeCollection nodesFromLabel(const Image& image, double label, bool openBorder, const Progress& progress) {
-    const auto wanted = static_cast<float>(label);
-    return nodesWhere(image, openBorder, progress, [wanted](float v) { return v == wanted; });
 }
 
 }  // namespace isowave

@@ -1,0 +1,180 @@
+#include "volume/image_stream.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "volume/image_source.h"
+
+namespace isowave {
+using namespace imageio;
+
+namespace {
+
+// Fits into a core's cache, so that voxels are looked at while they are there.
+constexpr std::int64_t kSlabBytes = 1 << 20;
+// A batch is long enough to keep many threads busy and short enough to be forgotten soon.
+constexpr std::int64_t kBatchSlabs = 32;
+
+// As which type voxels are held.
+ValueType heldType(const VoxelSource& source) {
+    return source.native && sizeOf(source.header.type) <= 2 ? source.header.type : ValueType::float32;
+}
+
+Voxels voxelsOf(ValueType type, const void* values, std::int64_t count) {
+    const auto as = [&]<class T>(T) -> Voxels {
+        return std::span(static_cast<const T*>(values), static_cast<std::size_t>(count));
+    };
+    switch (type) {
+        case ValueType::int8:
+            return as(std::int8_t());
+        case ValueType::uint8:
+            return as(std::uint8_t());
+        case ValueType::int16:
+            return as(std::int16_t());
+        case ValueType::uint16:
+            return as(std::uint16_t());
+        default:
+            return as(float());
+    }
+}
+
+}  // namespace
+
+struct ImageStream::State {
+    std::string name;
+    Image header;
+    SourcePtr source;  // null for an image in memory
+    ValueType type = ValueType::float32;
+    std::int64_t slabSlices = 1;
+    bool keep = false;          // the source is read once and kept
+    std::vector<char> kept;     // ... here
+    const void* all = nullptr;  // all voxels, when they are in memory
+    bool checked = false;       // the first pass is behind
+    std::mutex mutex;           // guards what follows
+    NotFinite notFinite;
+    std::int64_t inexact = 0;
+
+    std::int64_t sliceVoxels() const { return header.size[0] * header.size[1]; }
+    std::int64_t sliceBytes() const { return sliceVoxels() * static_cast<std::int64_t>(sizeOf(type)); }
+    void chooseSlab(std::int64_t wanted) {
+        slabSlices = wanted > 0 ? wanted : std::max<std::int64_t>(1, kSlabBytes / sliceBytes());
+        slabSlices = std::min(slabSlices, header.size[2]);
+    }
+
+    void readInto(std::int64_t z0, std::int64_t z1, void* out) {
+        std::int64_t rounded = 0;
+        if (source->header.type == type)
+            source->native ? source->readNative(z0, z1, out)
+                           : void(rounded = source->read(z0, z1, static_cast<float*>(out)));
+        else
+            rounded = source->read(z0, z1, static_cast<float*>(out));
+        if (checked || rounded == 0) return;
+        const std::lock_guard lock(mutex);
+        inexact += rounded;
+    }
+
+    void readAll(const Progress& progress) {
+        kept.resize(static_cast<std::size_t>(sliceBytes() * header.size[2]));
+        for (std::int64_t z = 0, end; z < header.size[2]; z = end) {
+            progress("reading", static_cast<double>(z) / static_cast<double>(header.size[2]));
+            end = std::min(z + source->slicesPerRead, header.size[2]);
+            readInto(z, end, kept.data() + z * sliceBytes());
+        }
+        source.reset();
+        all = kept.data();
+    }
+
+    Slab slab(std::int64_t z0, std::int64_t z1, std::vector<char>& buffer) {
+        const std::int64_t count = (z1 - z0) * sliceVoxels();
+        if (all) return {z0, z1, voxelsOf(type, static_cast<const char*>(all) + z0 * sliceBytes(), count)};
+        buffer.resize(static_cast<std::size_t>((z1 - z0) * sliceBytes()));
+        const bool zero = source->isZero(z0, z1);
+        if (zero)
+            std::fill(buffer.begin(), buffer.end(), char(0));
+        else
+            readInto(z0, z1, buffer.data());
+        return {z0, z1, voxelsOf(type, buffer.data(), count), zero};
+    }
+
+    void check(const Slab& slab) {
+        const auto* values = std::get_if<std::span<const float>>(&slab.voxels);
+        if (!values || slab.zero) return;
+        NotFinite here;
+        here.look(values->data(), static_cast<std::int64_t>(values->size()), slab.z0 * sliceVoxels());
+        if (here.count == 0) return;
+        const std::lock_guard lock(mutex);
+        notFinite.add(here);
+    }
+    void finishChecks() {
+        checkFinite(name, header.size, notFinite);
+        if (inexact > 0) header.warnings.push_back(roundedText(inexact, header));
+        checked = true;
+    }
+};
+
+ImageStream::ImageStream(const std::filesystem::path& path, const ImageReadOptions& options,
+                         std::int64_t slabSlices)
+    : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.name = path.string();
+    s.source = openSource(path, options);
+    s.header = imageOf(s.source->header);
+    s.type = heldType(*s.source);
+    s.chooseSlab(slabSlices);
+    s.keep = !s.source->plain;
+    const bool converts = s.type != s.source->header.type || !s.source->native;
+    if (s.keep)
+        checkMemory(s.name, *s.source, options, sizeOf(s.type), converts ? sizeOf(s.source->header.type) : 0);
+}
+
+ImageStream::ImageStream(const Image& image, std::int64_t slabSlices) : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.name = "image";
+    s.header.size = image.size;
+    s.header.indexToWorld = image.indexToWorld;
+    s.header.componentType = image.componentType;
+    s.header.integral = image.integral;
+    s.header.format = image.format;
+    s.header.warnings = image.warnings;
+    s.all = image.values.data();
+    s.checked = true;
+    s.chooseSlab(slabSlices);
+}
+
+ImageStream::~ImageStream() = default;
+ImageStream::ImageStream(ImageStream&&) noexcept = default;
+ImageStream& ImageStream::operator=(ImageStream&&) noexcept = default;
+
+const Image& ImageStream::header() const { return state_->header; }
+std::int64_t ImageStream::slabSlices() const { return state_->slabSlices; }
+bool ImageStream::isInFile() const { return !state_->all && !state_->keep; }
+
+void ImageStream::pass(std::string_view stage, const Progress& progress,
+                       const std::function<void(const Slab&)>& each,
+                       const std::function<void(std::int64_t)>& done) {
+    State& s = *state_;
+    if (s.keep && !s.all) s.readAll(progress);
+    const std::int64_t depth = s.header.size[2], slabs = (depth + s.slabSlices - 1) / s.slabSlices;
+    tbb::enumerable_thread_specific<std::vector<char>> buffers;
+    for (std::int64_t first = 0; first < slabs; first += kBatchSlabs) {
+        progress(stage, static_cast<double>(first) / static_cast<double>(slabs));
+        const std::int64_t last = std::min(first + kBatchSlabs, slabs);
+        tbb::parallel_for(tbb::blocked_range<std::int64_t>(first, last, 1), [&](const auto& range) {
+            for (std::int64_t i = range.begin(); i < range.end(); ++i) {
+                progress.check();
+                const Slab slab =
+                    s.slab(i * s.slabSlices, std::min((i + 1) * s.slabSlices, depth), buffers.local());
+                if (!s.checked) s.check(slab);
+                each(slab);
+            }
+        });
+        if (done) done(std::min(last * s.slabSlices, depth));
+    }
+    if (!s.checked) s.finishChecks();
+    progress(stage, 1);
+}
+
+}  // namespace isowave

@@ -1,0 +1,82 @@
+// Images that are never whole in memory: slabs of slices, read as often as wanted, each forgotten afterwards.
+//
+//   ImageStream scan("scan.mha");                                   // 1024^3 uint8: 1 GB on disk
+//   const ImageStatistics values = statisticsOf(scan);              // one pass over the file
+//   const NodeCollection nodes = nodesFromImage(scan, {.iso = 0.5});  // another
+//
+// Memory: a few MB, plus what comes out. Voxels that do not lie in a file as they are (compressed, rescaled,
+// DICOM) are decoded once and kept, as int8, uint8, int16 or uint16 where that is what the file holds and as
+// float32 otherwise.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/progress.h"
+#include "volume/image.h"
+
+namespace isowave {
+
+// Voxels as they are held; wider integers and float64 become float32, as in an Image.
+using Voxels =
+    std::variant<std::span<const std::int8_t>, std::span<const std::uint8_t>, std::span<const std::int16_t>,
+                 std::span<const std::uint16_t>, std::span<const float>>;
+
+// Slices z0 <= z < z1, x fastest.
+struct Slab {
+    std::int64_t z0, z1;
+    Voxels voxels;
+    bool zero = false;  // all voxels are 0, known without looking (a hole of a sparse file)
+};
+
+class ImageStream {
+  public:
+    // Throws what readImage() throws, but for voxels that are not finite, which the first pass finds.
+    // slabSlices: slices that are read at a time; 0: about 1 MB of them. No result depends on it.
+    explicit ImageStream(const std::filesystem::path& path, const ImageReadOptions& options = {},
+                         std::int64_t slabSlices = 0);
+    // Over an image in memory, which must outlive the stream.
+    explicit ImageStream(const Image& image, std::int64_t slabSlices = 0);
+    ~ImageStream();
+    ImageStream(ImageStream&&) noexcept;
+    ImageStream& operator=(ImageStream&&) noexcept;
+
+    // All but `values`. The warning about rounded integers is there after the first pass.
+    const Image& header() const;
+    // Slices in a slab; the last one of the image may have fewer.
+    std::int64_t slabSlices() const;
+    // False when all voxels are in memory.
+    bool isInFile() const;
+
+    // One pass: each(slab) for every slab, by several threads at once, a batch of slabs at a time; after a
+    // batch, done(z) on the calling thread, z the number of slices that are behind.
+    // Throws InputError: a file that cannot be read any more; in the first pass, after its last batch, voxels
+    // that are not finite. Throws Cancelled.
+    void pass(std::string_view stage, const Progress& progress, const std::function<void(const Slab&)>& each,
+              const std::function<void(std::int64_t z)>& done = {});
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// What an image holds.
+struct ImageStatistics {
+    float low = 0, high = 0;
+    // Values below which 1, 5, 25, 50, 75, 95, 99 % of the voxels lie (of every n-th voxel of large images).
+    std::vector<std::pair<int, float>> percentiles;
+    std::vector<float> distinct;  // ascending; empty when there are more than kMostDistinct
+    bool found = false;           // whether the value asked for is among the voxels
+    static constexpr std::size_t kMostDistinct = 64;
+};
+// One pass. wanted: the value to be looked for.
+ImageStatistics statisticsOf(ImageStream& stream, std::optional<float> wanted = {},
+                             const Progress& progress = {});
+
+}  // namespace isowave
