@@ -172,9 +172,12 @@ Description describePyramid(const fs::path& path, const Settings& settings, Cons
     d.json["source"] = pyramid.source;
     d.json["coefficients_stored"] = stored;
     d.json["control_points"] = points;
+    const std::int64_t memory = bytesOf(pyramid), file = static_cast<std::int64_t>(fs::file_size(path));
+    d.json["memory_bytes"] = memory;
+    d.json["file_bytes"] = file;
     d.json["steps"] = Json::array();
-    Table table(
-        {"step", "level", "halved", "voxel", "domain", "control points", "nodes", "details", "coefficients"});
+    Table table({"step", "level", "halved", "voxel", "domain", "control points", "nodes", "details",
+                 "coefficients", "leaves full"});
     for (const StepFacts& f : factsOf(pyramid)) {
         const bool whole = f.step % kStepsPerLevel == 0;
         const char axis = f.step == 0 ? '-' : "xyz"[pyramid.steps[f.step - 1].axis];
@@ -185,19 +188,26 @@ Description describePyramid(const fs::path& path, const Settings& settings, Cons
                                    {"control_points", f.controlPoints},
                                    {"nodes", f.definedNodes},
                                    {"details", f.details},
-                                   {"coefficients", f.coefficients}});
+                                   {"coefficients", f.coefficients},
+                                   {"leaf_occupancy", f.leafOccupancy}});
         table.row({std::to_string(f.step), whole ? std::to_string(f.step / kStepsPerLevel) : "",
                    std::string(1, axis),
                    fmt::format("{:.4g}x{:.4g}x{:.4g}", f.spacing.x(), f.spacing.y(), f.spacing.z()),
                    fmt::format("{}x{}x{}", f.domain.x(), f.domain.y(), f.domain.z()),
                    grouped(f.controlPoints), grouped(f.definedNodes), grouped(f.details),
-                   grouped(f.coefficients)});
+                   grouped(f.coefficients), fmt::format("{:.0f} %", 100 * f.leafOccupancy)});
     }
     d.text = fmt::format("{}: pyramid of {} steps, K {:g}\n", path.string(), pyramid.stepCount(), pyramid.K);
     for (const auto& [key, value] : pyramid.source) d.text += fmt::format("{:<22}{}\n", key, value);
     d.text += table.text();
+    const auto perPoint = [points](std::int64_t n) {
+        return static_cast<double>(n) / static_cast<double>(points);
+    };
     d.text += fmt::format("{} coefficients stored for {} control points (x{:.3f})\n", grouped(stored),
-                          grouped(points), static_cast<double>(stored) / static_cast<double>(points));
+                          grouped(points), perPoint(stored));
+    d.text += fmt::format("{} in memory ({:.1f} bytes a control point), {} on disk ({:.2f})\n",
+                          bytesText(static_cast<double>(memory)), perPoint(memory),
+                          bytesText(static_cast<double>(file)), perPoint(file));
     d.json["levels"] = storiesOf(pyramid, settings, console);
     const auto space = pyramid.source.find("input.space");  // as Solid::source() writes it
     const bool isMetric = space != pyramid.source.end() && space->second != "\"unspecified\"";

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <optional>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -67,14 +68,16 @@ class Wanted {
 // few hundredths of a percent of the surface. In the other direction every vertex and centroid counts.
 constexpr std::size_t kReferenceTriangles = 50'000;
 
-// Every k-th triangle, over the same points.
+// Every k-th triangle, each with points of its own when k > 1.
 TriangleMesh thinned(const TriangleMesh& mesh, std::size_t atMost) {
     const std::size_t stride = (mesh.triangles.size() + atMost - 1) / atMost;
     if (stride <= 1) return mesh;
     TriangleMesh result;
-    result.points = mesh.points;
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride)
-        result.triangles.push_back(mesh.triangles[i]);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+        const auto first = static_cast<std::uint32_t>(result.points.size());
+        for (const std::uint32_t v : mesh.triangles[i]) result.points.push_back(mesh.points[v]);
+        result.triangles.push_back({first, first + 1, first + 2});
+    }
     return result;
 }
 
@@ -112,13 +115,14 @@ class Ladder {
             level["seconds"] = clock_.secondsSoFar() - begin;
             levels_.push_back(std::move(level));
         }
-        if (step == 0) {
-            counts_ = countsOf(made.topology);
-            reference_ = std::move(mesh);
-        }
+        if (step != 0) return;
+        empty_ = vanished_;
+        counts_ = countsOf(made.topology);
+        reference_ = std::move(mesh);
+        reference_.normals = {};
     }
 
-    bool empty() const { return reference_.triangles.empty(); }
+    bool empty() const { return empty_; }
     const Json& levels() const { return levels_; }
 
   private:
@@ -130,6 +134,8 @@ class Ladder {
         json["spacing"] = triple(field.transform().voxelSize());
         json["control_points"] = field.controlPointCount();
         json["nodes"] = definedNodeCount(field);
+        json["leaf_occupancy"] = leafOccupancyOf(*field.shape);
+        json["memory_bytes"] = bytesOf(field);
         return json;
     }
 
@@ -146,8 +152,8 @@ class Ladder {
         OneSidedDistance to, from;
         if (step != 0 && !mesh.triangles.empty()) {
             if (!target_) {
-                target_.emplace(reference_);
                 sample_ = thinned(reference_, kReferenceTriangles);
+                target_.emplace(std::exchange(reference_, {}));
             }
             to = target_->distanceFrom(mesh, 0, console_.progress());
             from = DistanceTarget(mesh).distanceFrom(sample_, 0, console_.progress());
@@ -165,48 +171,53 @@ class Ladder {
     OutputFolder& out_;
     Console& console_;
     StageClock& clock_;
-    TriangleMesh reference_;                // level 0
-    TriangleMesh sample_;                   // some of its triangles
-    std::optional<DistanceTarget> target_;  // over reference_
+    TriangleMesh reference_;                // level 0, until it is first measured against
+    TriangleMesh sample_;                   // then some of its triangles
+    std::optional<DistanceTarget> target_;  // and all of them
     std::optional<SolidCounts> counts_;     // of the level before in the report, or of step 0
-    bool vanished_ = false;
+    bool vanished_ = false, empty_ = true;
     Json levels_ = Json::array();
 };
 
 // Passes every step by the ladder; says what the pyramid stores.
 struct PyramidCounts {
     int steps = 0;
-    std::int64_t coefficientsStored = 0, controlPoints = 0;
+    std::int64_t coefficientsStored = 0, controlPoints = 0, coarsestControlPoints = 0;
 };
 
 PyramidCounts climb(Solid solid, const Wanted& wanted, Ladder& ladder, const std::string& name,
                     Console& console, StageClock& clock) {
+    PyramidCounts counts;
     if (!solid.pyramid) {
         const StageClock::Scope scope(clock, "analyse");
         wavelets::AnalyseOptions options;
         if (wanted.last()) options.maxSteps = *wanted.last();
-        solid.pyramid =
-            wavelets::analyse(*solid.field, options, console.progress(),
+        counts.controlPoints = solid.field->controlPointCount();
+        const wavelets::Descent descent =
+            wavelets::descend(*std::exchange(solid.field, {}), options, console.progress(),
                               [&](int step, const BSplineField& field) { ladder.visit(step, field); });
+        counts.steps = descent.steps;
+        counts.coefficientsStored = descent.coefficientsStored;
+        counts.coarsestControlPoints = descent.coarsest.controlPointCount();
     } else {
         const StageClock::Scope scope(clock, "synthesise");
-        for (int step = 0; step <= solid.pyramid->stepCount(); ++step)
-            if (step == 0 || wanted.has(step))
-                ladder.visit(step, solid.pyramid->field(step, console.progress()));
+        const wavelets::Pyramid& pyramid = *solid.pyramid;
+        for (int step = 0; step <= pyramid.stepCount(); ++step)
+            if (step == 0 || wanted.has(step)) ladder.visit(step, pyramid.field(step, console.progress()));
+        counts = {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid),
+                  pyramid.coarsest.controlPointCount()};
     }
-    const wavelets::Pyramid& pyramid = *solid.pyramid;
     if (ladder.empty()) throw InputError(name, "has no surface; nothing to polygonize");
-    if (wanted.first() > pyramid.stepCount())
-        throw InputError(name,
-                         fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", pyramid.stepCount(),
-                                     pyramid.stepCount() / kStepsPerLevel, wanted.first()));
-    if (wanted.last() && *wanted.last() > pyramid.stepCount())
+    if (wanted.first() > counts.steps)
+        throw InputError(name, fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", counts.steps,
+                                           counts.steps / kStepsPerLevel, wanted.first()));
+    if (wanted.last() && *wanted.last() > counts.steps)
         console.say(fmt::format("{}: {} step {}", name,
-                                pyramid.coarsest.controlPointCount() == kControlPointsOfOneNode
+                                counts.coarsestControlPoints == kControlPointsOfOneNode
                                     ? "one node is left; the ladder ends at"
                                     : "the ladder ends at",
-                                pyramid.stepCount()));
-    return {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid)};
+                                counts.steps));
+    return counts;
 }
 
 std::string numberOf(const Json& json) {

@@ -59,8 +59,26 @@ std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid) {
         f.details = last ? 0 : static_cast<std::int64_t>(pyramid.steps[step].details->activeVoxelCount());
         coefficients += last ? f.controlPoints : f.details;
         f.coefficients = coefficients;
+        f.leafOccupancy = leafOccupancyOf(shape);
     }
     return facts;
+}
+
+double leafOccupancyOf(const Shape& shape) {
+    constexpr double kLeafVoxels = openvdb::BoolTree::LeafNodeType::SIZE;
+    const double held = kLeafVoxels * static_cast<double>(shape.tree().leafCount());
+    return held > 0 ? static_cast<double>(shape.activeVoxelCount()) / held : 0;
+}
+
+std::int64_t bytesOf(const BSplineField& field) {
+    return static_cast<std::int64_t>(field.controlPoints->memUsage() + field.shape->memUsage());
+}
+
+std::int64_t bytesOf(const wavelets::Pyramid& pyramid) {
+    std::int64_t bytes = bytesOf(pyramid.coarsest);
+    for (const wavelets::Step& step : pyramid.steps)
+        bytes += static_cast<std::int64_t>(step.shape->memUsage() + step.details->memUsage());
+    return bytes;
 }
 
 std::int64_t finestControlPoints(const wavelets::Pyramid& pyramid) {

@@ -24,10 +24,18 @@ struct StepFacts {
     std::int64_t definedNodes = 0;
     std::int64_t details = 0;       // that lead from the next coarser step to this one
     std::int64_t coefficients = 0;  // all that is needed for this step: coarsest field and details
+    double leafOccupancy = 0;
 };
 
 // Finest first, one for each step and one for the coarsest field.
 std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid);
+
+// Share of the lattice points in leaves that are control points, 0 to 1.
+double leafOccupancyOf(const Shape& shape);
+
+// Bytes in memory.
+std::int64_t bytesOf(const BSplineField& field);
+std::int64_t bytesOf(const wavelets::Pyramid& pyramid);
 
 // |I| of step 0.
 std::int64_t finestControlPoints(const wavelets::Pyramid& pyramid);

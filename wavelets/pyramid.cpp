@@ -19,33 +19,60 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
+// Halves direction after direction. onDirection(axis, shape, details): the shape of the finer field and what leads
+// back to it.
+template <class OnDirection>
+BSplineField halveAll(BSplineField current, const AnalyseOptions& options, const Progress& progress,
+                      const std::function<void(int, const BSplineField&)>& onStep,
+                      const OnDirection& onDirection) {
+    Extent extent(current);
+    const double whole = static_cast<double>(std::max<std::int64_t>(1, extent.controlPoints));
+    double worked = 0;
+    int step = 0, unchanged = 0;
+    if (onStep) onStep(0, current);
+    while (extent.controlPoints > kOneNode && step < options.maxSteps && unchanged < 3) {
+        progress("analysing", std::min(1.0, worked / (3 * whole)));
+        const int axis = step++ % 3;
+        DirectionResult result = analyseDirection(current, axis, progress);
+        onDirection(axis, std::move(current.shape), std::move(result.details));
+        current = std::move(result.coarse);
+        worked += static_cast<double>(extent.controlPoints);
+        const Extent now(current);
+        unchanged = now == extent ? unchanged + 1 : 0;
+        extent = now;
+        if (onStep) onStep(step, current);
+    }
+    progress("analysing", 1);
+    return current;
+}
+
+std::int64_t countOf(const DetailGrid& details) {
+    return static_cast<std::int64_t>(details.activeVoxelCount());
+}
+
 }  // namespace
 
 Pyramid analyse(const BSplineField& field, const AnalyseOptions& options, const Progress& progress,
                 const std::function<void(int, const BSplineField&)>& onStep) {
     Pyramid pyramid;
     pyramid.K = field.K;
-    BSplineField current = field;
-    const double whole = static_cast<double>(std::max<std::int64_t>(1, field.controlPointCount()));
-    Extent extent(field);
-    double worked = 0;
-    int unchanged = 0;
-    if (onStep) onStep(0, current);
-    while (extent.controlPoints > kOneNode && pyramid.stepCount() < options.maxSteps && unchanged < 3) {
-        progress("analysing", std::min(1.0, worked / (3 * whole)));
-        const int axis = pyramid.stepCount() % 3;
-        DirectionResult result = analyseDirection(current, axis, progress);
-        pyramid.steps.push_back({axis, current.shape, result.details});
-        current = std::move(result.coarse);
-        worked += static_cast<double>(extent.controlPoints);
-        const Extent now(current);
-        unchanged = now == extent ? unchanged + 1 : 0;
-        extent = now;
-        if (onStep) onStep(pyramid.stepCount(), current);
-    }
-    progress("analysing", 1);
-    pyramid.coarsest = std::move(current);
+    pyramid.coarsest =
+        halveAll(field, options, progress, onStep, [&](int axis, Shape::Ptr shape, DetailGrid::Ptr details) {
+            pyramid.steps.push_back({axis, std::move(shape), std::move(details)});
+        });
     return pyramid;
+}
+
+Descent descend(BSplineField field, const AnalyseOptions& options, const Progress& progress,
+                const std::function<void(int, const BSplineField&)>& onStep) {
+    Descent descent;
+    descent.coarsest =
+        halveAll(std::move(field), options, progress, onStep, [&](int, Shape::Ptr, DetailGrid::Ptr details) {
+            ++descent.steps;
+            descent.coefficientsStored += countOf(*details);
+        });
+    descent.coefficientsStored += descent.coarsest.controlPointCount();
+    return descent;
 }
 
 BSplineField Pyramid::field(int step, const Progress& progress) const {
@@ -62,7 +89,7 @@ BSplineField Pyramid::field(int step, const Progress& progress) const {
 
 std::int64_t Pyramid::coefficientsStored() const {
     std::int64_t count = coarsest.controlPointCount();
-    for (const Step& step : steps) count += static_cast<std::int64_t>(step.details->activeVoxelCount());
+    for (const Step& step : steps) count += countOf(*step.details);
     return count;
 }
 

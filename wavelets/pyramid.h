@@ -45,4 +45,14 @@ struct AnalyseOptions {
 Pyramid analyse(const BSplineField& field, const AnalyseOptions& options = {}, const Progress& progress = {},
                 const std::function<void(int step, const BSplineField&)>& onStep = {});
 
+// The same way down without a pyramid: details are counted and let go. Memory: two fields, that of a step and the
+// next coarser one with its details; step 0 goes too, unless somebody else holds on to it.
+struct Descent {
+    BSplineField coarsest;
+    int steps = 0;
+    std::int64_t coefficientsStored = 0;  // by the pyramid that was not kept
+};
+Descent descend(BSplineField field, const AnalyseOptions& options = {}, const Progress& progress = {},
+                const std::function<void(int step, const BSplineField&)>& onStep = {});
+
 }  // namespace isowave::wavelets

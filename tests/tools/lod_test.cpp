@@ -74,6 +74,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     for (const Json& level : r["levels"])
         EXPECT_EQ(keysOf(level),
                   (std::set<std::string>{"step", "level", "file", "spacing", "control_points", "nodes",
+                                         "leaf_occupancy", "memory_bytes",
                                          "vertices", "triangles", "components", "genus", "closed", "manifold",
                                          "volume", "area", "parts", "cavities", "specks_removed",
                                          "speck_volume", "bubbles_removed", "bubble_volume", "iso_shift",
@@ -87,6 +88,12 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     EXPECT_EQ(r["fit"]["method"], "distance");
     EXPECT_EQ(r["fit"]["disagreeing"], 0);
     EXPECT_GT(r["peak_memory_bytes"].get<double>(), 1e6);
+    // Of a leaf's 512 lattice points, 4 bytes each, so many are control points.
+    const Json& finest = r["levels"][0];
+    const double occupancy = finest["leaf_occupancy"], points = finest["control_points"];
+    EXPECT_GT(occupancy, 0.1);  // seen 0.37
+    EXPECT_LE(occupancy, 1);
+    EXPECT_GT(finest["memory_bytes"].get<double>(), 4 * points / occupancy);
     EXPECT_GE(r["seconds"]["total"].get<double>(), r["seconds"]["analyse"].get<double>());
 }
 

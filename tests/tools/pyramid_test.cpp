@@ -92,12 +92,19 @@ TEST_F(TorusPyramid, GivesItsFieldAsAGridForOtherTools) {
 TEST_F(TorusPyramid, IsListedStepByStep) {
     const Result text = succeed({"info", pyramid()});
     EXPECT_NE(text.out.find("coefficients stored for"), std::string::npos);
+    EXPECT_NE(text.out.find("bytes a control point"), std::string::npos);
     const Json info = succeed({"info", pyramid(), "--json"}).json();
     EXPECT_EQ(info["kind"], "pyramid");
     EXPECT_EQ(info["format_version"], 1);
     const Json& steps = info["steps"];
     EXPECT_EQ(steps[0]["control_points"], info["control_points"]);
     EXPECT_EQ(steps[0]["coefficients"], info["coefficients_stored"]);
+    EXPECT_EQ(info["file_bytes"], std::filesystem::file_size(pyramid()));
+    EXPECT_GT(info["memory_bytes"].get<double>(), 4 * info["coefficients_stored"].get<double>());
+    for (const Json& step : steps) {
+        EXPECT_GT(step["leaf_occupancy"].get<double>(), 0);
+        EXPECT_LE(step["leaf_occupancy"].get<double>(), 1);
+    }
     for (std::size_t s = 0; s + 1 < steps.size(); ++s) {
         EXPECT_EQ(steps[s]["step"], s);
         EXPECT_EQ(steps[s]["details"].get<std::int64_t>() + steps[s + 1]["coefficients"].get<std::int64_t>(),

@@ -45,6 +45,35 @@ TEST(Pyramid, RoundTripOfTheWholeZooIsWithinTenToTheMinusFiveOfK) {
     }
 }
 
+TEST(Pyramid, DescendingWithoutItMeetsTheSameFieldsAndCountsTheSameCoefficients) {
+    for (const auto& [name, field] : zoo::allFields()) {
+        std::vector<openvdb::FloatGrid::Ptr> expected;
+        const Pyramid pyramid = analyse(
+            field, {}, {}, [&](int, const BSplineField& step) { expected.push_back(step.controlPoints); });
+        std::size_t met = 0;
+        const Descent descent = descend(field, {}, {}, [&](int step, const BSplineField& f) {
+            ASSERT_EQ(step, static_cast<int>(met));
+            ASSERT_LT(met, expected.size());
+            EXPECT_TRUE(sameToTheBit(*f.controlPoints, *expected[met++])) << name << ' ' << step;
+        });
+        EXPECT_EQ(met, expected.size()) << name;
+        EXPECT_EQ(descent.steps, pyramid.stepCount()) << name;
+        EXPECT_EQ(descent.coefficientsStored, pyramid.coefficientsStored()) << name;
+        EXPECT_TRUE(sameToTheBit(*descent.coarsest.controlPoints, *pyramid.coarsest.controlPoints)) << name;
+    }
+}
+
+TEST(Pyramid, DescendingLetsGoOfTheFinerFields) {
+    BSplineField field = zoo::allFields().front().field;
+    field = {field.controlPoints->deepCopy(), field.shape->deepCopy(), field.K};
+    std::vector<std::weak_ptr<openvdb::FloatGrid>> met;
+    descend(std::move(field), {}, {}, [&](int, const BSplineField& f) {
+        for (const auto& finer : met) EXPECT_TRUE(finer.expired());
+        met.push_back(f.controlPoints);
+    });
+    EXPECT_GT(met.size(), 3u);
+}
+
 TEST(Pyramid, EverySolidEndsAtOneNode) {
     for (const auto& [name, field] : zoo::allFields()) {
         const Pyramid pyramid = analyse(field);
