@@ -56,12 +56,12 @@ struct NearestPoint {
     std::uint32_t triangle;
 };
 
-// A surface made ready for many distance queries (an AABB tree). Build once, ask from many threads. Keeps its
-// own copy of the mesh.
+// A surface made ready for many distance queries (a hierarchy of boxes). Build once, ask from many threads. Keeps the
+// mesh, without normals; give it away with std::move() where memory matters.
 class DistanceTarget {
   public:
     // REQUIRES: at least one triangle; finite points.
-    explicit DistanceTarget(const TriangleMesh& mesh);
+    explicit DistanceTarget(TriangleMesh mesh);
     ~DistanceTarget();
     DistanceTarget(DistanceTarget&&) noexcept;
     DistanceTarget& operator=(DistanceTarget&&) noexcept;

@@ -1,4 +1,4 @@
-// Distances between surfaces: an AABB tree over the target's triangles, samples on the other surface.
+// Distances between surfaces: boxes around the target's triangles, samples on the other surface.
 //
 // Passes of distanceFrom():
 //   corners   the distance of every point that a triangle uses, once
@@ -6,11 +6,8 @@
 //   sum       chunk by chunk, in order: chunks are cut by triangle number, not by thread
 //   tighten   the pieces that may hold a point farther away than any sample are halved on, the least certain
 //             ones first, until the bound is close to the maximum
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
 #include <CGAL/Simple_cartesian.h>
 #include <tbb/parallel_for.h>
-#include <boost/iterator/counting_iterator.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -19,6 +16,7 @@
 
 #include "base/error.h"
 #include "polygonize/measure.h"
+#include "polygonize/measure_boxes.h"
 #include "polygonize/nearest_on_triangle.h"
 
 namespace isowave {
@@ -31,38 +29,6 @@ using Vector3 = Kernel::Vector_3;
 constexpr std::size_t kChunk = 1024;  // triangles or points handed to a thread at once
 
 Point3 toPoint3(const Point& p) { return {p[0], p[1], p[2]}; }
-
-// ---- the tree ---------------------------------------------------------------------------------------------
-
-// A triangle of an index mesh, by number: the tree holds no copies of corners.
-class IndexedTriangle {
-  public:
-    using Point = Point3;
-    using Datum = Kernel::Triangle_3;
-    using Id = std::uint32_t;
-
-    // As AABB_tree::insert(first, beyond, mesh) calls it, with iterators over numbers.
-    IndexedTriangle(boost::counting_iterator<Id> number, const TriangleMesh* mesh)
-        : mesh_(mesh), id_(*number) {}
-    Id id() const { return id_; }
-    Point corner(int i) const { return toPoint3(mesh_->points[mesh_->triangles[id_][i]]); }
-    Datum datum() const { return {corner(0), corner(1), corner(2)}; }
-    Point reference_point() const { return corner(0); }
-
-  private:
-    const TriangleMesh* mesh_;
-    Id id_;
-};
-
-struct Traits : CGAL::AABB_traits<Kernel, IndexedTriangle> {
-    struct NearestPoint {
-        Point3 operator()(const Point3& q, const IndexedTriangle& t, const Point3& bound) const {
-            const Point3 p = nearestOnTriangle<Kernel>(q, t.corner(0), t.corner(1), t.corner(2));
-            return (q - p).squared_length() < (q - bound).squared_length() ? p : bound;
-        }
-    };
-    NearestPoint closest_point_object() const { return {}; }
-};
 
 // ---- pieces -----------------------------------------------------------------------------------------------
 
@@ -300,25 +266,24 @@ double volumeOf(const TriangleMesh& mesh) {
 
 struct DistanceTarget::Tree {
     TriangleMesh mesh;
-    CGAL::AABB_tree<Traits> boxes;
+    TriangleBoxes boxes;
 
-    explicit Tree(const TriangleMesh& from) : mesh{from.points, from.triangles, {}} {
-        assert(!mesh.triangles.empty());
-        const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-        boxes.insert(boost::counting_iterator<std::uint32_t>(0),
-                     boost::counting_iterator<std::uint32_t>(count), static_cast<const TriangleMesh*>(&mesh));
-        boxes.build();
-        boxes.accelerate_distance_queries();
+    explicit Tree(TriangleMesh from)
+        : mesh{std::move(from.points), std::move(from.triangles), {}}, boxes(mesh) {}
+
+    Point3 nearestOn(const Point3& p, std::uint32_t triangle) const {
+        const auto& [a, b, c] = mesh.triangles[triangle];
+        return nearestOnTriangle<Kernel>(p, toPoint3(mesh.points[a]), toPoint3(mesh.points[b]),
+                                         toPoint3(mesh.points[c]));
     }
-
     Sample sampleAt(const Point3& p) const {
-        const auto [at, triangle] = boxes.closest_point_and_primitive(p);
-        return {p, std::sqrt((p - at).squared_length()), triangle};
+        const auto nearest = boxes.nearest({p.x(), p.y(), p.z()}, [&](std::uint32_t triangle) {
+            return (p - nearestOn(p, triangle)).squared_length();
+        });
+        return {p, std::sqrt(nearest.squared), nearest.triangle};
     }
     double distanceToTriangle(const Point3& p, std::uint32_t triangle) const {
-        const IndexedTriangle t(boost::counting_iterator<std::uint32_t>(triangle), &mesh);
-        return std::sqrt(
-            (p - nearestOnTriangle<Kernel>(p, t.corner(0), t.corner(1), t.corner(2))).squared_length());
+        return std::sqrt((p - nearestOn(p, triangle)).squared_length());
     }
     BoundedPiece bounded(const Piece& piece, const Sample& centroid) const {
         const double convex = boundByConvexity(
@@ -382,7 +347,7 @@ DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedP
     return maximum;
 }
 
-DistanceTarget::DistanceTarget(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>(mesh)) {}
+DistanceTarget::DistanceTarget(TriangleMesh mesh) : tree_(std::make_unique<Tree>(std::move(mesh))) {}
 DistanceTarget::~DistanceTarget() = default;
 DistanceTarget::DistanceTarget(DistanceTarget&&) noexcept = default;
 DistanceTarget& DistanceTarget::operator=(DistanceTarget&&) noexcept = default;
@@ -390,7 +355,8 @@ DistanceTarget& DistanceTarget::operator=(DistanceTarget&&) noexcept = default;
 double DistanceTarget::distance(const Point& p) const { return tree_->sampleAt(toPoint3(p)).distance; }
 
 NearestPoint DistanceTarget::nearest(const Point& p) const {
-    const auto [at, triangle] = tree_->boxes.closest_point_and_primitive(toPoint3(p));
+    const std::uint32_t triangle = tree_->sampleAt(toPoint3(p)).nearest;
+    const Point3 at = tree_->nearestOn(toPoint3(p), triangle);
     return {{at.x(), at.y(), at.z()}, triangle};
 }
 
