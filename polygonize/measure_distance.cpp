@@ -365,7 +365,11 @@ OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double s
     assert(spacing >= 0);
     if (from.triangles.empty()) return {};
 
-    const auto sampleAt = [this](const Point3& p) { return tree_->sampleAt(p); };
+    // A large triangle is cut into millions of samples: a wish to stop is asked for at each, not by the chunk.
+    const auto sampleAt = [this, &progress](const Point3& p) {
+        progress.check();
+        return tree_->sampleAt(p);
+    };
     const std::vector<char> used = usedPoints(from);
     std::vector<Sample> corners(from.points.size());
     forChunks(from.points.size(), progress, "distances of vertices",

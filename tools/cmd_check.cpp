@@ -66,6 +66,7 @@ int runCheck(const Settings& settings, Console& console) {
     const Json intersections =
         settings.selfIntersections ? Json(countSelfIntersections(mesh, console.progress())) : Json(nullptr);
 
+    console.progress().check();  // a stop that came while counting prints nothing either
     if (settings.json) {
         Json json;
         json["version"] = 1;

@@ -66,6 +66,7 @@ int runCompare(const Settings& settings, Console& console) {
     const double sampling = settings.sampling.value_or(diagonalOf(a.mesh) / kSamplesPerDiagonal);
     const MeshComparison c = compareMeshes(a.mesh, b.mesh, sampling, console.progress());
 
+    console.progress().check();  // a stop that came too late for the last stage prints nothing either
     if (!settings.json) {
         console.print(textOf(c));
         return 0;

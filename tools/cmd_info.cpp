@@ -233,6 +233,7 @@ Description describe(const fs::path& path, const Settings& settings, Console& co
 
 int runInfo(const Settings& settings, Console& console) {
     const Description description = describe(settings.files[0], settings, console);
+    console.progress().check();  // a stop that came while counting prints nothing either
     console.print(settings.json ? textOf(description.json) : description.text);
     return 0;
 }

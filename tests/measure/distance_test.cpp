@@ -221,5 +221,16 @@ TEST(Comparison, StopsWhenAsked) {
     EXPECT_THROW(compareMeshes(sphere(1, 5), sphere(2, 5), 0, progress), Cancelled);
 }
 
+// One triangle cut into 10^5 samples is one step of the progress, but many of the wish to stop.
+TEST(Comparison, StopsWithinATriangle) {
+    const TriangleMesh a{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    const TriangleMesh b{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}}, {}};
+    std::atomic<int> asked = 0;
+    Progress progress;
+    progress.stopRequested = [&] { return ++asked > 1000; };
+    EXPECT_THROW(compareMeshes(a, b, 1.0 / 256, progress), Cancelled);
+    EXPECT_LT(asked, 1100);
+}
+
 }  // namespace
 }  // namespace isowave
