@@ -71,6 +71,7 @@ class Pnm {
         } else {
             readBytes(bitmap, most > 255 ? 2 : 1);
         }
+        if (!bits) refuseAbove(bitmap, most);
         return bitmap;
     }
 
@@ -78,6 +79,14 @@ class Pnm {
     [[noreturn]] void truncated() const {
         throw InputError(
             name_, fmt::format("ends after {} bytes, before its last pixel; it is truncated", bytes_.size()));
+    }
+    void refuseAbove(const Bitmap& bitmap, int most) const {
+        const auto above = std::find_if(bitmap.values.begin(), bitmap.values.end(),
+                                        [most](float v) { return v > static_cast<float>(most); });
+        if (above != bitmap.values.end())
+            throw InputError(name_,
+                             fmt::format("pixel {} is {}; its header says that {} is the largest value",
+                                         above - bitmap.values.begin(), *above, most));
     }
     void skipBlanks() {
         while (at_ < bytes_.size() &&

@@ -207,7 +207,7 @@ void writePng(const std::filesystem::path& path, const Curves& curves, const Vie
     file.commit();
 }
 
-void writeSheet(const std::filesystem::path& path, const std::vector<Panel>& panels, const View& view) {
+std::string sheetOf(const std::vector<Panel>& panels, const View& view) {
     constexpr double kSide = 260, kGap = 20, kLabel = 24;
     constexpr std::size_t kMostColumns = 5;
     const Point size = scaled(view, kSide);
@@ -229,7 +229,7 @@ void writeSheet(const std::filesystem::path& path, const std::vector<Panel>& pan
             x, y, size.x, size.y, viewBox(view), kInk, pathOf(panels[i].curves, view), x + size.x / 2,
             y + size.y + 18, escaped(panels[i].label));
     }
-    write(path, out + "</svg>\n");
+    return out + "</svg>\n";
 }
 
 }  // namespace isowave::curves2d

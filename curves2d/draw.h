@@ -39,6 +39,7 @@ struct Panel {
     std::string label;
     Curves curves;
 };
-void writeSheet(const std::filesystem::path& path, const std::vector<Panel>& panels, const View& view);
+// The SVG's text: it is one of several files of a job, which appear together.
+std::string sheetOf(const std::vector<Panel>& panels, const View& view);
 
 }  // namespace isowave::curves2d

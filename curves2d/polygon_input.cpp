@@ -197,8 +197,10 @@ class JsonReader {
         Ring ring;
         for (const Json& n : numbers) {
             const std::int64_t number = n.is_number_integer() ? n.get<std::int64_t>() : INT64_MAX;
+            // What is beyond 64 bits with a sign is kept without one, and would wrap to an arc that there is.
+            const bool wraps = n.is_number_unsigned() && number < 0;
             const std::int64_t index = number < 0 ? ~number : number;
-            if (index >= static_cast<std::int64_t>(arcs_.size()))
+            if (wraps || index >= static_cast<std::int64_t>(arcs_.size()))
                 throw InputError(out_.name(), fmt::format("{}: arc {} of {}", place, n.dump(), arcs_.size()));
             const Ring& arc = arcs_[static_cast<std::size_t>(index)];
             if (number < 0)

@@ -110,7 +110,7 @@ class Scribe {
         putJson(facts, file);
     }
 
-    void writeSheetTo(const std::filesystem::path& path) const { curves2d::writeSheet(path, panels_, view_); }
+    std::string sheet() const { return curves2d::sheetOf(panels_, view_); }
     const Table& table() const { return table_; }
     const Json& steps() const { return steps_; }
     std::size_t filesWritten() const { return files_; }
@@ -248,13 +248,20 @@ int runCurves(const Settings& settings, Console& console) {
                                      ladder.steps.back().step / kStepsPerPlaneLevel, settings.levels->first));
 
     const Json report = reportOf(settings, input, scribe, ladder);
+    // What can fail for want of room comes first; then only names change.
+    std::optional<OutputFile> sheetPlace;
+    std::optional<AtomicFile> sheet;
     if (settings.sheet) {
-        OutputFile sheet(*settings.sheet);
-        scribe.writeSheetTo(*settings.sheet);
-        sheet.commit();
+        sheetPlace.emplace(*settings.sheet);
+        sheet.emplace(*settings.sheet);
+        writeWhole(*sheet, scribe.sheet());
     }
     if (copy) writeJson(*copy, report);
     out.commit();
+    if (sheet) {
+        sheet->commit();
+        sheetPlace->commit();
+    }
     if (copy) copy->commit();
     if (toStdout) console.print(textOf(report));
     if (settings.table) console.print(scribe.table().text());

@@ -73,14 +73,16 @@ std::string textOf(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void writeJson(AtomicFile& file, const Json& json) {
+void writeWhole(AtomicFile& file, const std::string& text) {
     try {
-        file.stream() << textOf(json) << std::flush;
+        file.stream() << text << std::flush;
     } catch (const std::ios_base::failure&) {
         throw OperationError(file.place().string(),
                              std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
     }
 }
+
+void writeJson(AtomicFile& file, const Json& json) { writeWhole(file, textOf(json)); }
 
 // ---- text ----
 

@@ -62,6 +62,7 @@ void putTopology(Json& json, const MeshTopology& topology);
 std::string textOf(const Json& json);
 
 // Into an open file, all of it: a full disk is found here. commit() is the caller's. Throws OperationError.
+void writeWhole(AtomicFile& file, const std::string& text);
 void writeJson(AtomicFile& file, const Json& json);
 
 // Columns aligned to the right, the first one to the left; headers carry the units.

@@ -182,6 +182,8 @@ TEST_F(Images, BadOnesAreRefusedInOneLine) {
                 HasSubstr("2^31"));
     EXPECT_THAT(errorOf([&] { readInput(file("flat.pgm", "P2 2 2 255 9 9 9 9"), {}); }),
                 HasSubstr("every pixel is 9"));
+    EXPECT_THAT(errorOf([&] { readBitmap(file("above.pgm", "P2 2 1 255 9 900")); }),
+                HasSubstr("pixel 1 is 900; its header says that 255 is the largest value"));
     EXPECT_THAT(errorOf([&] { readInput(file("low.pgm", "P2 2 2 255 9 8 9 9"), {.iso = 100}); }),
                 HasSubstr("values run from 8 to 9"));
     EXPECT_THAT(errorOf([&] { readInput(folder_, {}); }), HasSubstr("cannot be read"));
@@ -267,6 +269,12 @@ TEST_F(Polygons, TopojsonArcsAreStitchedForwardsAndBackwards) {
                                       "{\"l\":{\"type\":\"Polygon\",\"arcs\":[[7]]}}}"));
                 }),
                 HasSubstr("arc 7 of 1"));
+    EXPECT_THAT(errorOf([&] {  // 2^64 - 1: not arc 0 backwards
+                    readPolygons(file("t.json",
+                                      "{\"type\":\"Topology\",\"arcs\":[[[0,0],[1,1]]],\"objects\":"
+                                      "{\"l\":{\"type\":\"Polygon\",\"arcs\":[[18446744073709551615]]}}}"));
+                }),
+                HasSubstr("arc 18446744073709551615 of 1"));
 }
 
 TEST_F(Polygons, TextOfRings) {
@@ -406,7 +414,7 @@ TEST_F(Drawing, SvgHasOneSubpathARing) {
     view.extent.take(Point{70, 70});
     writeSvg(folder_ / "a.svg", curves, view);
     writeSvg(folder_ / "b.svg", smoothed(field, curves, 0.05), view);
-    writeSheet(folder_ / "c.svg", {{"1", curves}, {"<2>", curves}}, view);
+    std::ofstream(folder_ / "c.svg") << sheetOf({{"1", curves}, {"<2>", curves}}, view);
     const auto count = [&](const char* name, char c) {
         const std::string text = read(folder_ / name);
         const std::string d = text.substr(text.find(" d=\""));

@@ -62,6 +62,16 @@ TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
     EXPECT_THAT(contentOf(folder / "sheet.svg"), HasSubstr(">1</text>"));
 }
 
+TEST(CurvesCommand, NoSheetIsLeftBehindWhereTheReportCannotBeWritten) {
+    const Folder folder;
+    const fs::path sheet = folder / "sheet.svg";
+    const Result result = isowave(
+        curves(kAfrica, folder, {"--pixels", "120", "--sheet", sheet.string(), "--json", "/dev/full"}));
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_FALSE(fs::exists(sheet));
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
 TEST(CurvesCommand, OneThreadAndFourWriteTheSameBytes) {
     const Folder folder;
     std::map<std::string, std::string> written[2];
