@@ -1,52 +1,44 @@
-// Columns of leaves: the leaves of a tree that share the two coordinates other than a given axis. The unit of
-// work of a direction: a line along the axis stays within its column, and fine columns map to coarse ones one
-// to one.
+// Columns of leaves: the leaves of a tree that share the two coordinates other than a given axis, cut where several
+// leaves in a row are missing. The unit of work of a direction: a line along the axis stays within its column, and
+// fine columns map to coarse ones one to one.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <tuple>
+#include <span>
 #include <vector>
 
 #include "volume/vdb.h"
+#include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {
-
-inline constexpr int kLeafLog2 = 3, kLeafDim = 8, kLinesPerLeaf = kLeafDim * kLeafDim;
 
 // The two axes other than `axis`, ascending.
 constexpr std::array<int, 2> otherAxes(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
 
-// Where line `line` (0..63) of a leaf starts and how far apart its voxels are, in a leaf's linear offsets
-// (x << 6 | y << 3 | z).
-struct LineLayout {
-    std::array<std::uint16_t, kLinesPerLeaf> start{};
-    int stride = 0;
+// How far apart neighbours along an axis are in a leaf's linear offsets (x << 6 | y << 3 | z).
+inline constexpr std::array<int, 3> kLeafStride = {64, 8, 1};
 
-    explicit LineLayout(int axis) {
-        constexpr std::array<int, 3> kStride = {64, 8, 1};
-        const auto other = otherAxes(axis);
-        stride = kStride[axis];
-        for (int line = 0; line < kLinesPerLeaf; ++line)
-            start[line] =
-                static_cast<std::uint16_t>((line >> 3) * kStride[other[0]] + (line & 7) * kStride[other[1]]);
-    }
-};
+// Offset of position 0 of each line of a leaf.
+using LineStarts = std::array<std::uint16_t, kLinesPerLeaf>;
+constexpr LineStarts lineStarts(int axis) {
+    const auto other = otherAxes(axis);
+    LineStarts starts{};
+    for (int line = 0; line < kLinesPerLeaf; ++line)
+        starts[line] = static_cast<std::uint16_t>((line >> kLeafLog2) * kLeafStride[other[0]] +
+                                                  (line & (kLeafDim - 1)) * kLeafStride[other[1]]);
+    return starts;
+}
 
-// One column: leaf k of it (k = position >> 3 along the axis) is leaves[k - first], or null where there is
-// none.
-template <class Leaf>
-struct LeafColumn {
+// One column, or a part of one: leaf k of it (k = position >> 3 along the axis) is leaves[k - first], or null where
+// there is none.
+struct Column {
+    using Leaf = const openvdb::BoolTree::LeafNodeType;
+
     int u = 0, v = 0;        // origin of the leaves on the two other axes, ascending axis order
     std::int64_t first = 0;  // index of leaves[0]
-    std::vector<Leaf*> leaves;
+    std::span<Leaf* const> leaves;
 
-    Leaf* at(std::int64_t index) const {
-        const std::int64_t i = index - first;
-        return i < 0 || i >= static_cast<std::int64_t>(leaves.size()) ? nullptr
-                                                                      : leaves[static_cast<std::size_t>(i)];
-    }
     std::int64_t end() const { return first + static_cast<std::int64_t>(leaves.size()); }
     openvdb::Coord origin(int axis, std::int64_t index) const {
         const auto other = otherAxes(axis);
@@ -58,44 +50,21 @@ struct LeafColumn {
     }
 };
 
-// All columns of a tree along an axis, sorted by (u, v).
-template <class Tree>
-class LeafColumns {
+// All columns of a shape along an axis, sorted by (u, v) and position. So many leaves are missing between two columns
+// of the same (u, v) that no interval and no coarse leaf reaches from one to the other (an interval ends at most one
+// position beyond its run, and two are joined across four; the coarse leaf at the end of a column covers at most two
+// fine leaves beyond it): work and memory go with the leaves, not with the length of the domain.
+class Columns {
   public:
-    using Leaf = const typename Tree::LeafNodeType;
-    using Column = LeafColumn<Leaf>;
+    static constexpr int kGap = 4;
 
-    LeafColumns(const Tree& tree, int axis) {
-        const auto other = otherAxes(axis);
-        std::vector<Leaf*> leaves;
-        leaves.reserve(tree.leafCount());
-        tree.getNodes(leaves);
-        std::sort(leaves.begin(), leaves.end(), [axis, other](Leaf* a, Leaf* b) {
-            const auto &p = a->origin(), &q = b->origin();
-            return std::tuple(p[other[0]], p[other[1]], p[axis]) <
-                   std::tuple(q[other[0]], q[other[1]], q[axis]);
-        });
-        for (Leaf* leaf : leaves) {
-            const auto& o = leaf->origin();
-            const std::int64_t index = o[axis] >> kLeafLog2;
-            if (columns_.empty() || columns_.back().u != o[other[0]] || columns_.back().v != o[other[1]])
-                columns_.push_back({o[other[0]], o[other[1]], index, {}});
-            columns_.back().leaves.resize(static_cast<std::size_t>(index - columns_.back().first), nullptr);
-            columns_.back().leaves.push_back(leaf);
-        }
-    }
+    Columns(const openvdb::BoolTree& shape, int axis);
 
-    const std::vector<Column>& columns() const { return columns_; }
-
-    // The column at (u, v), or null.
-    const Column* find(int u, int v) const {
-        const auto at =
-            std::lower_bound(columns_.begin(), columns_.end(), std::tuple(u, v),
-                             [](const Column& c, const auto& key) { return std::tuple(c.u, c.v) < key; });
-        return at != columns_.end() && at->u == u && at->v == v ? &*at : nullptr;
-    }
+    std::size_t size() const { return columns_.size(); }
+    const Column& operator[](std::size_t i) const { return columns_[i]; }
 
   private:
+    std::vector<Column::Leaf*> leaves_;
     std::vector<Column> columns_;
 };
 

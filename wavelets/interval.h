@@ -79,6 +79,11 @@ class IntervalTransform {
                     std::span<double> fine);
 
   private:
+    double* row0(int n);  // rows of interval_kernels.h, all 0
+    double* folded(int n) {
+        return scratch_.data() + (scratch_.size() - static_cast<std::size_t>(2 * n + 5));
+    }
+
     std::vector<double> scratch_;
 };
 
