@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/heap.h"
 #include "base/progress.h"
 #include "tools/cli.h"
 #include "tools/console.h"
@@ -57,6 +58,7 @@ int complain(int code, std::string message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    isowave::keepFreedMemory();
     tools::installSignalHandlers();
     try {
         const int code = run(argc, argv);
