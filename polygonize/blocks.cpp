@@ -54,36 +54,6 @@ void addSteps(openvdb::tree::ValueAccessor<const openvdb::FloatTree>& accessor,
 
 }  // namespace
 
-void gather(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin,
-            PaddedBlock& block) {
-    // Along one axis the padded block takes the last point of the block before, all 8, and the first 2 after.
-    struct Span {
-        int from, count, to;
-    };
-    constexpr std::array<Span, 3> kSpans{{{7, 1, 0}, {0, 8, 1}, {0, 2, 9}}};
-    for (int bx = 0; bx < 3; ++bx)
-        for (int by = 0; by < 3; ++by)
-            for (int bz = 0; bz < 3; ++bz) {
-                const Coord at = origin.offsetBy(kBlock * (bx - 1), kBlock * (by - 1), kBlock * (bz - 1));
-                const auto* leaf = accessor.probeConstLeaf(at);
-                const float* source = leaf ? leaf->buffer().data() : nullptr;
-                const float tile = leaf ? 0 : accessor.getValue(at);
-                const Span &sx = kSpans[bx], &sy = kSpans[by], &sz = kSpans[bz];
-                for (int x = 0; x < sx.count; ++x)
-                    for (int y = 0; y < sy.count; ++y) {
-                        float* to =
-                            &block
-                                 .values[((sx.to + x) * PaddedBlock::kSize + sy.to + y) * PaddedBlock::kSize +
-                                         sz.to];
-                        if (source)
-                            std::copy_n(source + ((sx.from + x) * kBlock + sy.from + y) * kBlock + sz.from,
-                                        sz.count, to);
-                        else
-                            std::fill_n(to, sz.count, tile);
-                    }
-            }
-}
-
 BlockBits insideBits(const PaddedBlock& block) {
     constexpr int n = PaddedBlock::kSize;
     const auto mean = [](double a, double b, double c) { return a + 4 * b + c; };

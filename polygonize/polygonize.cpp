@@ -64,7 +64,7 @@ class ShiftedField {
 
     const openvdb::FloatTree& tree() const { return grid_.tree(); }
     void gather(const Coord& origin, PaddedBlock& block) const {
-        isowave::gather(grid_.getConstUnsafeAccessor(), origin, block);
+        block.gather(grid_.getConstUnsafeAccessor(), origin);
         if (iso_ != 0)
             for (float& c : block.values) c -= iso_;
     }

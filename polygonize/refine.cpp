@@ -49,7 +49,7 @@ using FineBlocks = std::array<FineBlock, 8>;
 
 FineBlocks refineBlock(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin) {
     PaddedBlock padded;
-    gather(accessor, origin, padded);
+    padded.gather(accessor, origin);
     CoarseValues values, known;  // known: 1 in I. Weights are positive, so a sum > 0 has a term in I
     for (int x = 0, n = 0; x < kCoarse; ++x)
         for (int y = 0; y < kCoarse; ++y)
@@ -125,7 +125,7 @@ openvdb::BoolTree::Ptr signsOf(const openvdb::FloatTree& controlPoints, const Pr
         const openvdb::FloatGrid::ConstUnsafeAccessor accessor(controlPoints);
         PaddedBlock padded;
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            gather(accessor, origins[i], padded);
+            padded.gather(accessor, origins[i]);
             const BlockBits inside = insideBits(padded);
             leaves[i] = std::make_unique<ShapeLeaf>(origins[i], false, false);
             if (const auto* leaf = accessor.probeConstLeaf(origins[i]))

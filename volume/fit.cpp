@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "volume/leaf_words.h"
 #include "volume/padded_leaf.h"
 #include "volume/tiles.h"
 
@@ -49,14 +50,17 @@ Mask cornersOf(const Mask& nodes) {
         PaddedLeaf<bool, 1, 0> kept;
         kept.gather(accessor, leaf.origin(),
                     [](const MaskLeaf& l, openvdb::Index o) { return l.isValueOn(o); });
+        LeafWords corner{};
         for (int x = 0; x < 8; ++x)
-            for (int y = 0; y < 8; ++y)
+            for (int y = 0; y < 8; ++y) {
+                const auto row = [&](int dx, int dy) { return &kept.values[kept.index(x - dx, y - dy, 0)]; };
+                const bool *a = row(0, 0), *b = row(0, 1), *c = row(1, 0), *d = row(1, 1);
                 for (int z = 0; z < 8; ++z) {
-                    bool corner = false;
-                    for (int b = 0; b < 8; ++b)
-                        corner = corner || kept.at(x - (b >> 2), y - ((b >> 1) & 1), z - (b & 1));
-                    if (corner) leaf.setValueOn(static_cast<openvdb::Index>(x << 6 | y << 3 | z));
+                    const bool any = a[z] | b[z] | c[z] | d[z] | a[z - 1] | b[z - 1] | c[z - 1] | d[z - 1];
+                    corner[x] |= std::uint64_t(any) << (8 * y + z);
                 }
+            }
+        leaf.setValueMask(maskOf(corner));
     });
     return corners;
 }
@@ -109,19 +113,41 @@ openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& t
 
 // ---- shape ----------------------------------------------------------------------------------------------
 
-// makeInside() returns Coord (of the field) -> bool for one thread; source: a tree, in its own coordinates,
-// whose root regions cover every inside region.
+// Signs of distances, and of a grid that holds signs.
+bool isInside(float distance) { return distance < 0; }
+bool isInside(bool inside) { return inside; }
+LeafWords signsOf(const FloatLeaf& leaf) { return negativeWordsOf(leaf.buffer().data()); }
+LeafWords signsOf(const BoolLeaf& leaf) { return insideWordsOf(leaf); }
+
+// The signs of a source, a tree in its own coordinates (lattice point i of the source is i + shift of the field; shift
+// is whole leaves), for one thread: of one lattice point of the field, and of a leaf.
+template <class Tree>
+class Signs {
+  public:
+    Signs(const Tree& source, const openvdb::Coord& shift) : accessor_(source), shift_(shift) {}
+    bool operator()(const openvdb::Coord& c) const { return isInside(accessor_.getValue(c - shift_)); }
+    LeafWords leaf(const openvdb::Coord& origin) const {
+        if (const auto* there = accessor_.probeConstLeaf(origin - shift_)) return signsOf(*there);
+        LeafWords words;
+        words.fill((*this)(origin) ? ~std::uint64_t{0} : 0);
+        return words;
+    }
+
+  private:
+    ConstAccessor<Tree> accessor_;
+    openvdb::Coord shift_;
+};
+
+// makeInside() returns the signs of the source for one thread; source: a tree, in its own coordinates, whose root
+// regions cover every inside region.
 template <class Source, class MakeInside>
 Shape::Ptr makeShape(const Mask& known, const Source& source, const openvdb::Coord& shift,
                      const MakeInside& makeInside) {
     auto shape = Shape::create(false);
     shape->setTree(std::make_shared<openvdb::BoolTree>(known, false, false, openvdb::TopologyCopy()));
     openvdb::tree::LeafManager<openvdb::BoolTree> leaves(shape->tree());
-    leaves.foreach ([&makeInside](BoolLeaf& leaf, std::size_t) {
-        auto inside = makeInside();
-        for (openvdb::Index i = 0; i < BoolLeaf::SIZE; ++i)
-            leaf.setValueOnly(i, inside(leaf.offsetToGlobalCoord(i)));
-    });
+    leaves.foreach (
+        [&makeInside](BoolLeaf& leaf, std::size_t) { setInside(leaf, makeInside().leaf(leaf.origin())); });
     fillTiles(shape->tree(), makeInside);
     fillRootTiles(
         shape->tree(), source, [&shift](const openvdb::Coord& c) { return c + shift; }, makeInside);
@@ -143,9 +169,7 @@ BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transfor
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
     const openvdb::BoolTree& signs = field.shape->tree();
     leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
-        const BoolLeaf* inside = signs.probeConstLeaf(leaf.origin());
-        for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
-            leaf.setValueOnly(i, inside->getValue(i) ? -k : k);
+        fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
     });
     const auto valueAt = [&signs, k] {
         return [accessor = ConstAccessor<openvdb::BoolTree>(signs), k](const openvdb::Coord& c) {
@@ -316,19 +340,26 @@ Mask nodesNear(const openvdb::FloatTree& distance, float band) {
         ConstAccessor<openvdb::FloatTree> accessor(distance);
         PaddedLeaf<float, 0, 1> d;
         d.gather(accessor, leaf.origin());
+        LeafWords kept{};
         for (int x = 0; x < 8; ++x)
-            for (int y = 0; y < 8; ++y)
-                for (int z = 0; z < 8; ++z) {
-                    float nearest = d.at(x, y, z);
-                    bool stabbed = false;
-                    for (int b = 1; b < 8; ++b) {
-                        const float corner = d.at(x + (b >> 2), y + ((b >> 1) & 1), z + (b & 1));
-                        stabbed = stabbed || (corner < 0) != (d.at(x, y, z) < 0);
-                        if (std::abs(corner) < std::abs(nearest)) nearest = corner;
-                    }
-                    if (stabbed || std::abs(nearest) < band)
-                        leaf.setValueOn(static_cast<openvdb::Index>(x << 6 | y << 3 | z));
+            for (int y = 0; y < 8; ++y) {
+                std::array<float, 9> nearest;  // of the four edges along z that a node has, at either end
+                std::array<int, 9> inside;
+                const auto row = [&](int dx, int dy) { return &d.values[d.index(x + dx, y + dy, 0)]; };
+                const float *p = row(0, 0), *q = row(0, 1), *r = row(1, 0), *s = row(1, 1);
+                for (int z = 0; z < 9; ++z) {
+                    nearest[z] = std::min(std::min(std::abs(p[z]), std::abs(q[z])),
+                                          std::min(std::abs(r[z]), std::abs(s[z])));
+                    inside[z] = int(p[z] < 0) + int(q[z] < 0) + int(r[z] < 0) + int(s[z] < 0);
                 }
+                for (int z = 0; z < 8; ++z) {
+                    const int corners = inside[z] + inside[z + 1];
+                    const bool stabbed = corners != 0 && corners != 8;
+                    const bool near = std::min(nearest[z], nearest[z + 1]) < band;
+                    kept[x] |= std::uint64_t(stabbed || near) << (8 * y + z);
+                }
+            }
+        leaf.setValueMask(maskOf(kept));
     });
     return nodes;
 }
@@ -342,11 +373,7 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
     const Mask kept(signs, false, openvdb::TopologyCopy());
     Mask known = knownAround(kept);
     const openvdb::Coord shift = moveOrigin(known);
-    const auto makeInside = [&signs, &shift] {
-        return [accessor = ConstAccessor<openvdb::BoolTree>(signs), shift](const openvdb::Coord& c) {
-            return accessor.getValue(c - shift);
-        };
-    };
+    const auto makeInside = [&signs, &shift] { return Signs(signs, shift); };
     BSplineField field = makeField(makeShape(known, signs, shift, makeInside), options.K,
                                    *shiftedTransform(nodes.grid->transform(), shift));
     FitReport result;
@@ -371,11 +398,7 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
     const openvdb::FloatTree& d = distance.constTree();
     Mask known = knownAround(nodesNear(d, static_cast<float>(options.band)));
     const openvdb::Coord shift = moveOrigin(known);
-    const auto makeInside = [&d, &shift] {
-        return [accessor = ConstAccessor<openvdb::FloatTree>(d), shift](const openvdb::Coord& c) {
-            return accessor.getValue(c - shift) < 0;
-        };
-    };
+    const auto makeInside = [&d, &shift] { return Signs(d, shift); };
     BSplineField field = makeField(makeShape(known, d, shift, makeInside), options.K,
                                    *shiftedTransform(distance.transform(), shift));
 
