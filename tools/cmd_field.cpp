@@ -14,7 +14,7 @@ int runField(const Settings& settings, Console& console) {
     if (settings.output->extension() != ".vdb") throw UsageError("-o: a field is a .vdb file; name it so");
     const int step = wantedStep(settings);
     OutputFile out(*settings.output);
-    Solid solid = loadSolid(settings.files[0], settings, console, clock);
+    Solid solid = loadSolid(settings.files[0], settings, console, clock, step);
     const BSplineField field =
         fieldAtStep(std::move(solid), step, settings.files[0].string(), console, clock);
     writeField(*settings.output, field);

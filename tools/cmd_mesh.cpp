@@ -29,7 +29,8 @@ int runMesh(const Settings& settings, Console& console) {
     const int step = wantedStep(settings);
     const std::string name = settings.files[0].string();
     OutputFile out(*settings.output);
-    Solid solid = loadSolid(settings.files[0], settings, console, clock);
+    const int finestStep = LevelMesher::needsLevel0(settings) ? 0 : step;
+    Solid solid = loadSolid(settings.files[0], settings, console, clock, finestStep);
     const Space space = outputSpace(solid, settings);
     LevelMesher mesher(settings, solid.openBorder, LevelMesher::Facts::few, console, clock);
     if (step != 0 && mesher.needsLevel0())

@@ -497,10 +497,10 @@ Json unflattened(const std::map<std::string, std::string>& source) {
     return json;
 }
 
-Solid loadPyramidSolid(const fs::path& path, StageClock& clock) {
+Solid loadPyramidSolid(const fs::path& path, int finestStep, StageClock& clock) {
     Solid solid;
     const StageClock::Scope scope(clock, "read");
-    solid.pyramid = wavelets::readPyramid(path);
+    solid.pyramid = wavelets::readPyramid(path, finestStep);
     const Json source = unflattened(solid.pyramid->source);
     solid.input["path"] = path.string();
     solid.input["kind"] = "pyramid";
@@ -560,7 +560,8 @@ InputKind kindOf(const fs::path& path, const Settings& settings) {
                      "--size, --type and --spacing");
 }
 
-Solid loadSolid(const fs::path& path, const Settings& settings, Console& console, StageClock& clock) {
+Solid loadSolid(const fs::path& path, const Settings& settings, Console& console, StageClock& clock,
+                int finestStep) {
     checkFitOptions(settings);
     const InputKind kind = kindOf(path, settings);
     refuseForeignOptions(path, kind, settings);
@@ -574,7 +575,7 @@ Solid loadSolid(const fs::path& path, const Settings& settings, Console& console
         case InputKind::pyramid:
             break;
     }
-    return loadPyramidSolid(path, clock);
+    return loadPyramidSolid(path, finestStep, clock);
 }
 
 LoadedMesh loadMesh(const fs::path& path, const Progress& progress) {

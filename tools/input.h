@@ -46,9 +46,10 @@ struct Solid {
     std::map<std::string, std::string> source() const;
 };
 
+// finestStep: of a pyramid's file only what this step and coarser ones need is read.
 // Throws InputError (bad data), UsageError (an option that this kind of input does not have), Cancelled.
 Solid loadSolid(const std::filesystem::path& path, const Settings& settings, Console& console,
-                StageClock& clock);
+                StageClock& clock, int finestStep = 0);
 
 // A mesh file as it is, in LPS when it says SPACE=RAS. format: as MeshFileInfo has it.
 struct LoadedMesh {

@@ -46,7 +46,11 @@ class LevelMesher {
     ~LevelMesher();
 
     // Whether make() must have seen step 0 before any other.
-    bool needsLevel0() const { return settings_.preserveVolume || wantsThin_ || settings_.features; }
+    bool needsLevel0() const { return needsLevel0(settings_) || wantsThin_; }
+    // The same of a mesher that is to be made with Facts::few.
+    static bool needsLevel0(const Settings& settings) {
+        return settings.preserveVolume || settings.protectThin || settings.features;
+    }
     LevelMesh make(int step, const BSplineField& field);
 
   private:

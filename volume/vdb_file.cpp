@@ -6,11 +6,13 @@
 //   at 21  36 chars UUID as text, random in OpenVDB's own files
 //   at 57  the file's metadata, the number of grids, the grids
 //
-// Files written here carry two marks of their own. The UUID is of version 8 ("vendor specific", RFC 9562) and
-// its other 122 bits are a hash of all other bytes; the metadatum isowave:file_bytes is the length of the
-// file. The first finds damage before OpenVDB parses anything, which matters: io::bloscFromStream() reads as
-// many bytes as a damaged file tells it to into a buffer of another size. The second tells truncation from
-// other damage.
+// Files written here carry three marks of their own. The metadatum isowave:parts says of the bytes before the first grid
+// and of each grid, descriptor included, where they end and what their hash is (of the former with those of the UUID and
+// of this text taken as zeros): what is read is found whole before it is parsed, without reading the rest. The UUID is of
+// version 8 ("vendor specific", RFC 9562) and its other 122 bits are a hash of that text. The metadatum
+// isowave:file_bytes is the length of the file. The hashes find damage before OpenVDB parses anything, which matters:
+// io::bloscFromStream() reads as many bytes as a damaged file tells it to into a buffer of another size. The length tells
+// truncation from other damage.
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
@@ -18,8 +20,10 @@
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -28,6 +32,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "volume/content_hash.h"
 
 namespace isowave {
 namespace {
@@ -37,63 +42,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::streamoff kUuidAt = 21, kUuidLength = 36, kHeaderBytes = kUuidAt + kUuidLength;
 constexpr const char* kFileBytes = "isowave:file_bytes";
-
-// ---------------------------------------------------------------------------------------------- the content
-// hash
-
-// Two 64-bit lanes, each h <- mix((h ^ word) * p) with p odd. For a fixed word that is a bijection of h, and
-// for a fixed h one of the word; so any change within one aligned 8-byte word changes both lanes for certain,
-// and other changes escape with probability 2^-122. Not cryptographic: it finds damage, not malice.
-class ContentHash {
-  public:
-    void add(const char* bytes, std::size_t count) {  // REQUIRES: all calls but the last: count % 8 == 0
-        for (; count >= 8; bytes += 8, count -= 8) {
-            std::uint64_t word;
-            std::memcpy(&word, bytes, 8);
-            step(word);
-        }
-        if (count > 0) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, bytes, count);
-            step(word);
-            step(count);
-        }
-    }
-    // As a UUID of version 8: xxxxxxxx-xxxx-8xxx-yxxx-xxxxxxxxxxxx, y in 8..b.
-    std::string uuid() const {
-        const std::uint64_t a = (lane_[0] & ~0xF000ULL) | 0x8000ULL;
-        const std::uint64_t b = (lane_[1] & ~(3ULL << 62)) | (2ULL << 62);
-        return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", a >> 32, (a >> 16) & 0xFFFF, a & 0xFFFF,
-                           b >> 48, b & 0xFFFFFFFFFFFFULL);
-    }
-
-  private:
-    void step(std::uint64_t word) {
-        for (int i = 0; i < 2; ++i) {
-            lane_[i] = (lane_[i] ^ word) * kPrime[i];
-            lane_[i] ^= lane_[i] >> 29;
-        }
-    }
-    // The odd multipliers of xxHash64 (its PRIME64_1 and _2): any odd number keeps the claim above.
-    static constexpr std::uint64_t kPrime[2] = {0x9E3779B185EBCA87ULL, 0xC2B2AE3D27D4EB4FULL};
-    std::uint64_t lane_[2] = {1, 2};
-};
-
-// The UUID that belongs to a file: the hash of its bytes with those of the UUID taken as zeros.
-std::string uuidOfContent(std::istream& file) {
-    ContentHash hash;
-    std::vector<char> block(1 << 16);
-    bool first = true;
-    file.clear();
-    file.seekg(0);
-    while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
-        const auto count = static_cast<std::size_t>(file.gcount());
-        if (first && count >= kHeaderBytes) std::fill_n(block.begin() + kUuidAt, kUuidLength, '\0');
-        first = false;
-        hash.add(block.data(), count);
-    }
-    return hash.uuid();
-}
+constexpr const char* kParts = "isowave:parts";
 
 // -------------------------------------------------------------------------------------------------------
 // reading
@@ -111,6 +60,7 @@ struct Preamble {
     std::int64_t length = 0;  // of the file on disk
     std::string uuid;
     std::optional<std::int64_t> writtenLength;  // isowave:file_bytes
+    std::int64_t partsAt = 0, partsLength = 0;  // where the text of isowave:parts lies; 0 without it
 
     // A file that another program wrote again from what it read here keeps our metadata under a UUID of its own:
     // it is that program's file, unless its length is still the one that we wrote.
@@ -119,13 +69,17 @@ struct Preamble {
     }
 };
 
-// Where the 8 bytes of isowave:file_bytes lie in `text`, a MetaMap as written; npos if it is not there.
-// An entry is: uint32 length, name, uint32 length, type name ("int64"), uint32 length of the value, value.
+// Where the value of metadatum `name` of type `type` begins in `text`, a MetaMap as written; npos if it is not there.
+// An entry is: uint32 length, name, uint32 length, type name, uint32 length of the value, value.
+std::size_t valueAt(const std::string& text, const char* name, const char* type) {
+    const std::size_t at = text.find(name);
+    if (at == std::string::npos) return at;
+    const std::size_t value = at + std::strlen(name) + 4 + std::strlen(type) + 4;
+    return value <= text.size() ? value : std::string::npos;
+}
 std::size_t fileBytesAt(const std::string& text) {
-    const std::size_t name = text.find(kFileBytes);
-    if (name == std::string::npos) return name;
-    const std::size_t value = name + std::strlen(kFileBytes) + 4 + std::strlen("int64") + 4;
-    return value + 8 <= text.size() ? value : std::string::npos;
+    const std::size_t at = valueAt(text, kFileBytes, "int64");
+    return at != std::string::npos && at + 8 <= text.size() ? at : std::string::npos;
 }
 
 Preamble readPreamble(const std::filesystem::path& path, std::ifstream& file) {
@@ -157,7 +111,98 @@ Preamble readPreamble(const std::filesystem::path& path, std::ifstream& file) {
         std::memcpy(&length, start.data() + at, 8);
         result.writtenLength = length;
     }
+    if (const std::size_t at = valueAt(start, kParts, "string"); at != std::string::npos) {
+        std::uint32_t length;
+        std::memcpy(&length, start.data() + at - 4, 4);
+        if (static_cast<std::int64_t>(at) + length <= result.length) {
+            result.partsAt = static_cast<std::int64_t>(at);
+            result.partsLength = length;
+        }
+    }
     return result;
+}
+
+// A stretch of a file with the hash that its bytes should have.
+struct Part {
+    std::int64_t begin = 0, end = 0;
+    std::string hash;
+};
+
+std::string hashOf(std::istream& file, const Part& part, const std::vector<Part>& zeros = {}) {
+    ContentHash hash;
+    std::vector<char> block(1 << 16);
+    file.seekg(part.begin);
+    for (std::int64_t at = part.begin; at < part.end;) {
+        const auto count = std::min<std::int64_t>(static_cast<std::int64_t>(block.size()), part.end - at);
+        file.read(block.data(), count);
+        for (const Part& z : zeros)
+            for (std::int64_t i = std::max(at, z.begin); i < std::min(at + count, z.end); ++i)
+                block[i - at] = 0;
+        hash.add(block.data(), static_cast<std::size_t>(count));
+        at += count;
+    }
+    return hash.hex();
+}
+
+// The parts of a file: what lies before the first grid, then each grid. As text, isowave:parts, 16 hexadecimal digits of
+// where a part ends and 32 of its hash, part by part.
+class PartTable {
+  public:
+    static constexpr std::size_t kEndLength = 16, kEntryLength = kEndLength + ContentHash::kHexLength;
+
+    std::vector<Part> parts;
+    std::int64_t textAt = 0, textLength = 0;
+
+    std::string text() const {
+        std::string result;
+        for (const Part& part : parts) result += fmt::format("{:016x}{}", part.end, part.hash);
+        return result;
+    }
+    // The hash of the first part, with the UUID and the table's own text taken as zeros.
+    std::string hashOfHead(std::istream& file) const {
+        return hashOf(file, parts.front(),
+                      {{kUuidAt, kUuidAt + kUuidLength, {}}, {textAt, textAt + textLength, {}}});
+    }
+    // The UUID of a file: the hash of this text.
+    static std::string uuidOf(const std::string& text) {
+        ContentHash hash;
+        hash.add(text.data(), text.size());
+        return hash.uuid();
+    }
+    // The table of a file, found to be true of itself and of the first part; nothing where it is not.
+    // REQUIRES: exceptions on for short reads.
+    static std::optional<PartTable> read(std::istream& file, const Preamble& preamble) {
+        PartTable table;
+        table.textAt = preamble.partsAt;
+        table.textLength = preamble.partsLength;
+        std::string text(static_cast<std::size_t>(table.textLength), '\0');
+        file.seekg(table.textAt);
+        file.read(text.data(), table.textLength);
+        if (text.empty() || text.size() % kEntryLength != 0 || uuidOf(text) != preamble.uuid) return {};
+        std::int64_t begin = 0;
+        for (std::size_t at = 0; at < text.size(); at += kEntryLength) {
+            std::int64_t end = -1;
+            std::from_chars(text.data() + at, text.data() + at + kEndLength, end, 16);
+            if (end < begin || end > preamble.length) return {};
+            table.parts.push_back({begin, end, text.substr(at + kEndLength, ContentHash::kHexLength)});
+            begin = end;
+        }
+        if (begin != preamble.length || table.hashOfHead(file) != table.parts.front().hash) return {};
+        return table;
+    }
+};
+
+// REQUIRES: exceptions on for short reads.
+bool contentMatches(std::ifstream& file, const Preamble& preamble) {
+    const auto table = PartTable::read(file, preamble);
+    return table && std::all_of(table->parts.begin() + 1, table->parts.end(),
+                                [&](const Part& part) { return hashOf(file, part) == part.hash; });
+}
+
+InputError damaged(const std::filesystem::path& path) {
+    return InputError(
+        path.string(),
+        "is damaged: its content does not match the hash in its header; copy or write it again");
 }
 
 // Our own files: whole, to the byte, or refused.
@@ -165,10 +210,7 @@ void checkOwnFile(const std::filesystem::path& path, std::ifstream& file, const 
     if (preamble.writtenLength && *preamble.writtenLength > preamble.length)
         throw InputError(path.string(), fmt::format("was written with {} bytes but holds {}; it is truncated",
                                                     *preamble.writtenLength, preamble.length));
-    if (uuidOfContent(file) != preamble.uuid)
-        throw InputError(
-            path.string(),
-            "is damaged: its content does not match the hash in its header; copy or write it again");
+    if (!contentMatches(file, preamble)) throw damaged(path);
 }
 
 // Files of others: OpenVDB's File writes where each grid ends, so that truncation is known before a tree is
@@ -204,12 +246,11 @@ VdbContent parse(std::ifstream& file) {
     openvdb::io::Stream stream(file, /*delayLoad=*/false);
     VdbContent content{*stream.getGrids(), stream.getMetadata()};
     content.metadata->removeMeta(kFileBytes);
+    content.metadata->removeMeta(kParts);
     return content;
 }
 
-}  // namespace
-
-VdbContent readVdb(const std::filesystem::path& path) {
+std::ifstream openVdb(const std::filesystem::path& path) {
     initializeVdb();
     const std::string name = path.string();
     std::error_code error;
@@ -218,24 +259,155 @@ VdbContent readVdb(const std::filesystem::path& path) {
         throw InputError(name, "is not a file; expected a .vdb file");
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(name, "cannot be opened; check its permissions");
+    return file;
+}
 
-    const Preamble preamble = readPreamble(path, file);
-    if (preamble.ours()) checkOwnFile(path, file, preamble);
+// Runs `work` on the file; whatever OpenVDB and the stream throw becomes an InputError.
+template <class Work>
+auto guarded(const std::string& name, std::ifstream& file, std::int64_t length, const Work& work) {
     try {
         // OpenVDB does not look at what read() says; with exceptions on, no short read goes unseen.
         file.clear();
         file.exceptions(std::ios::failbit | std::ios::badbit);
-        if (!preamble.ours()) GridEnds().check(name, file, preamble.length);
-        return parse(file);
+        return work();
+    } catch (const InputError&) {
+        throw;
     } catch (const std::ios_base::failure&) {
-        throw InputError(
-            name, fmt::format("ends too early, after {} bytes; it is truncated or damaged", preamble.length));
+        throw InputError(name,
+                         fmt::format("ends too early, after {} bytes; it is truncated or damaged", length));
     } catch (const std::bad_alloc&) {
         throw InputError(name,
                          "asks for more memory than there is; it is damaged or too large for this machine");
     } catch (const std::exception& e) {
         throw InputError(name, "is damaged or of an unknown kind: " + oneLine(e.what()));
     }
+}
+
+}  // namespace
+
+VdbContent readVdb(const std::filesystem::path& path) {
+    std::ifstream file = openVdb(path);
+    const Preamble preamble = readPreamble(path, file);
+    return guarded(path.string(), file, preamble.length, [&] {
+        if (preamble.ours())
+            checkOwnFile(path, file, preamble);
+        else
+            GridEnds().check(path.string(), file, preamble.length);
+        return parse(file);
+    });
+}
+
+// -------------------------------------------------------------------------------------------------------
+// reading in parts
+
+namespace {
+
+// Reads single grids.
+class GridReader : public openvdb::io::Archive {
+  public:
+    // Reads the file's metadata.
+    openvdb::MetaMap readMetadata(std::istream& file) {
+        start(file);
+        openvdb::MetaMap metadata;
+        metadata.readMeta(file);
+        return metadata;
+    }
+    openvdb::GridBase::Ptr readGrid(std::istream& file, std::int64_t at) {
+        start(file);
+        file.seekg(at);
+        openvdb::io::GridDescriptor descriptor;
+        descriptor.read(file);
+        auto grid = openvdb::GridBase::createGrid(descriptor.gridType());
+        grid->setSaveFloatAsHalf(descriptor.saveFloatAsHalf());
+        Archive::readGrid(grid, descriptor, file);
+        return grid;
+    }
+
+  private:
+    void start(std::istream& file) {
+        file.seekg(0);
+        readHeader(file);
+        setFormatVersion(file);
+        setLibraryVersion(file);
+        openvdb::io::setDataCompression(file, compression());
+    }
+};
+
+// The name of the grid whose descriptor begins at `part`. Its bytes were not checked: a length that is out of the
+// question reads as no name.
+std::string gridNameAt(std::istream& file, const Part& part) {
+    std::uint32_t length = 0;
+    file.seekg(part.begin);
+    file.read(reinterpret_cast<char*>(&length), sizeof length);
+    constexpr std::uint32_t kLongest = 1 << 12;
+    if (length > kLongest || length > part.end - part.begin - std::int64_t(sizeof length)) return {};
+    std::string name(length, '\0');
+    file.read(name.data(), length);
+    return openvdb::io::GridDescriptor::nameAsString(name);
+}
+
+}  // namespace
+
+struct VdbParts::State {
+    std::filesystem::path path;
+    std::ifstream file;
+    std::int64_t length = 0, bytesRead = 0;
+    openvdb::MetaMap metadata;
+    std::vector<std::pair<std::string, Part>> grids;  // by name
+    std::optional<VdbContent> whole;                  // of files that are not ours
+};
+
+VdbParts::VdbParts(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.path = path;
+    s.file = openVdb(path);
+    const Preamble preamble = readPreamble(path, s.file);
+    s.length = preamble.length;
+    if (!preamble.ours() || preamble.writtenLength != preamble.length) {
+        s.whole = readVdb(path);
+        s.bytesRead = s.length;
+        return;
+    }
+    guarded(path.string(), s.file, s.length, [&] {
+        const auto table = PartTable::read(s.file, preamble);
+        if (!table) throw damaged(path);
+        s.metadata = GridReader().readMetadata(s.file);
+        for (std::size_t i = 1; i < table->parts.size(); ++i)
+            s.grids.emplace_back(gridNameAt(s.file, table->parts[i]), table->parts[i]);
+        s.bytesRead = table->parts.front().end;
+    });
+    s.metadata.removeMeta(kFileBytes);
+    s.metadata.removeMeta(kParts);
+}
+
+VdbParts::~VdbParts() = default;
+
+const openvdb::MetaMap& VdbParts::metadata() const {
+    return state_->whole ? *state_->whole->metadata : state_->metadata;
+}
+
+std::int64_t VdbParts::bytesRead() const { return state_->bytesRead; }
+
+openvdb::GridBase::Ptr VdbParts::read(const std::string& gridName) {
+    State& s = *state_;
+    if (s.whole) {
+        for (const auto& grid : s.whole->grids)
+            if (grid->getName() == gridName) return grid;
+        return nullptr;
+    }
+    const auto at =
+        std::find_if(s.grids.begin(), s.grids.end(), [&](const auto& g) { return g.first == gridName; });
+    if (at == s.grids.end()) return nullptr;
+    const Part& part = at->second;
+    s.bytesRead += part.end - part.begin;
+    return guarded(s.path.string(), s.file, s.length, [&] {
+        if (hashOf(s.file, part) != part.hash)
+            throw InputError(
+                s.path.string(),
+                fmt::format("is damaged: grid '{}' does not match its hash; copy or write it again",
+                            oneLine(gridName)));
+        return GridReader().readGrid(s.file, part.begin);
+    });
 }
 
 // -------------------------------------------------------------------------------------------------------
@@ -259,22 +431,55 @@ class StreamArchive : public openvdb::io::Archive {
     }
 };
 
-// pass 1: the content; pass 2: its length; pass 3: the hash of both in place of the random UUID.
+// Where the parts of a file that was just written lie.
+class WrittenParts : public openvdb::io::Archive {
+  public:
+    std::vector<Part> read(std::istream& file) {
+        file.seekg(0);
+        readHeader(file);
+        setFormatVersion(file);
+        setLibraryVersion(file);
+        openvdb::MetaMap().readMeta(file);
+        const std::int32_t count = readGridCount(file);
+        std::vector<Part> parts{{0, file.tellg(), {}}};
+        for (std::int32_t i = 0; i < count; ++i) {
+            openvdb::io::GridDescriptor grid;
+            grid.read(file);
+            grid.seekToEnd(file);
+            parts.push_back({parts.back().end, grid.getEndPos(), {}});
+        }
+        return parts;
+    }
+};
+
+// pass 1: the content; pass 2: its length; pass 3: the hashes of its parts and their hash in place of the random UUID.
 void writeContent(AtomicFile& file, const openvdb::GridCPtrVec& grids, openvdb::MetaMap metadata) {
     std::ostream& stream = file.stream();
     metadata.insertMeta(kFileBytes, openvdb::Int64Metadata(0));
+    PartTable table;
+    table.textLength = static_cast<std::int64_t>((1 + grids.size()) * PartTable::kEntryLength);
+    metadata.insertMeta(kParts, openvdb::StringMetadata(std::string(std::size_t(table.textLength), '0')));
     StreamArchive().writeTo(stream, grids, metadata);
 
     stream.seekp(0, std::ios::end);
     const std::int64_t length = stream.tellp();
-    std::ostringstream metadataText;
-    metadata.writeMeta(metadataText);
-    stream.seekp(kHeaderBytes + static_cast<std::streamoff>(fileBytesAt(metadataText.str())));
+    std::ostringstream text;
+    metadata.writeMeta(text);
+    stream.seekp(kHeaderBytes + static_cast<std::streamoff>(fileBytesAt(text.str())));
     stream.write(reinterpret_cast<const char*>(&length), 8);
     stream.flush();
 
     std::ifstream written(file.temporary(), std::ios::binary);
-    const std::string uuid = uuidOfContent(written);
+    written.exceptions(std::ios::failbit | std::ios::badbit);
+    table.textAt = kHeaderBytes + static_cast<std::int64_t>(valueAt(text.str(), kParts, "string"));
+    table.parts = WrittenParts().read(written);
+    table.parts.front().hash = table.hashOfHead(written);
+    for (std::size_t i = 1; i < table.parts.size(); ++i)
+        table.parts[i].hash = hashOf(written, table.parts[i]);
+
+    const std::string parts = table.text(), uuid = PartTable::uuidOf(parts);
+    stream.seekp(table.textAt);
+    stream.write(parts.data(), static_cast<std::streamsize>(parts.size()));
     stream.seekp(kUuidAt);
     stream.write(uuid.data(), kUuidLength);
 }

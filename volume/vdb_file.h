@@ -8,7 +8,9 @@
 // (3) The values come back to the bit, inactive ones too.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -23,6 +25,27 @@ struct VdbContent {
 
 // Reads everything. Throws InputError: missing, empty, a folder, not a .vdb, truncated, damaged.
 VdbContent readVdb(const std::filesystem::path& path);
+
+// Grids of a file one by one: only what is asked for is read. A file that writeVdb() wrote has a hash of each of its
+// parts, so that promise (2) holds for what is read and nobody looks at the rest; any other file is read whole.
+class VdbParts {
+  public:
+    // Reads the metadata and where each grid lies. Throws as readVdb() does.
+    explicit VdbParts(const std::filesystem::path& path);
+    ~VdbParts();
+    VdbParts(const VdbParts&) = delete;
+    VdbParts& operator=(const VdbParts&) = delete;
+
+    const openvdb::MetaMap& metadata() const;
+    // Null when there is no grid of that name. Throws InputError where the grid is damaged.
+    openvdb::GridBase::Ptr read(const std::string& gridName);
+    // Bytes of the file that were looked at so far.
+    std::int64_t bytesRead() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 // Temporary name, then rename. Throws OperationError. Blosc-compressed where OpenVDB has Blosc; single grids
 // can be read by openvdb::io::File, and vdb_print lists them.

@@ -15,7 +15,8 @@
 
 namespace isowave::wavelets {
 
-// What turned the field of step s into that of step s + 1.
+// What turned the field of step s into that of step s + 1. shape and details are null where a reader left them out
+// (pyramid_file.h).
 struct Step {
     int axis = 0;      // the direction that was halved
     Shape::Ptr shape;  // of step s
@@ -30,7 +31,7 @@ struct Pyramid {
     std::map<std::string, std::string> source;
 
     int stepCount() const { return static_cast<int>(steps.size()); }
-    // The field of a step, 0 <= step <= stepCount().
+    // The field of a step, 0 <= step <= stepCount(). REQUIRES: shape and details of that step and all after it.
     BSplineField field(int step, const Progress& progress = {}) const;
     // Details of all steps plus the control points of the coarsest field.
     std::int64_t coefficientsStored() const;

@@ -18,6 +18,9 @@ constexpr const char* kAxes = "isowave:axes";
 const std::string kSource = "isowave:source:";
 constexpr const char* kPyramid = "pyramid";
 
+std::string shapeName(std::size_t step) { return fmt::format("shape_{:03}", step); }
+std::string detailsName(std::size_t step) { return fmt::format("details_{:03}", step); }
+
 template <class Grid>
 openvdb::GridBase::ConstPtr named(const typename Grid::ConstPtr& grid, const std::string& name) {
     auto copy = grid->copy();  // shares the tree
@@ -29,26 +32,27 @@ openvdb::GridBase::ConstPtr named(const typename Grid::ConstPtr& grid, const std
 // The parts of a file, by name.
 class Parts {
   public:
-    Parts(std::string file, const openvdb::GridPtrVec& grids) : file_(std::move(file)) {
-        for (const auto& grid : grids) grids_[grid->getName()] = grid;
-    }
+    explicit Parts(const std::filesystem::path& path) : file_(path.string()), parts_(path) {}
+
+    const openvdb::MetaMap& metadata() const { return parts_.metadata(); }
+    std::int64_t bytesRead() const { return parts_.bytesRead(); }
 
     template <class Grid>
-    typename Grid::Ptr take(const std::string& name) const {
-        const auto at = grids_.find(name);
-        if (at == grids_.end())
+    typename Grid::Ptr take(const std::string& name) {
+        const auto part = parts_.read(name);
+        if (!part)
             throw InputError(file_,
                              fmt::format("the pyramid's part '{}' is missing; the file is damaged", name));
-        auto grid = openvdb::gridPtrCast<Grid>(at->second);
+        auto grid = openvdb::gridPtrCast<Grid>(part);
         if (!grid)
             throw InputError(file_, fmt::format("the pyramid's part '{}' is a {} grid, expected {}", name,
-                                                at->second->type(), Grid::gridType()));
+                                                part->type(), Grid::gridType()));
         return grid;
     }
 
   private:
     std::string file_;
-    std::map<std::string, openvdb::GridBase::Ptr> grids_;
+    VdbParts parts_;
 };
 
 template <class T>
@@ -90,38 +94,50 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
     grids.push_back(named<openvdb::FloatGrid>(pyramid.coarsest.controlPoints, "control_points"));
     grids.push_back(named<Shape>(pyramid.coarsest.shape, "shape"));
     for (std::size_t s = 0; s < pyramid.steps.size(); ++s) {
-        grids.push_back(named<Shape>(pyramid.steps[s].shape, fmt::format("shape_{:03}", s)));
-        grids.push_back(named<DetailGrid>(pyramid.steps[s].details, fmt::format("details_{:03}", s)));
+        grids.push_back(named<Shape>(pyramid.steps[s].shape, shapeName(s)));
+        grids.push_back(named<DetailGrid>(pyramid.steps[s].details, detailsName(s)));
     }
     writeVdb(path, grids, meta);
 }
 
-Pyramid readPyramid(const std::filesystem::path& path) {
-    const std::string file = path.string();
-    const VdbContent content = readVdb(path);
-    checkFormat(file, *content.metadata);
+namespace {
+
+// Everything but the grids. Steps have their axis only.
+Pyramid readHead(const std::string& file, const openvdb::MetaMap& metadata) {
+    checkFormat(file, metadata);
     Pyramid pyramid;
-    pyramid.K = metaValue<double>(file, *content.metadata, kK);
+    pyramid.K = metaValue<double>(file, metadata, kK);
     if (!(pyramid.K > 0 && std::isfinite(pyramid.K)))
         throw InputError(file, fmt::format("K is {}, expected a positive number", pyramid.K));
-    const std::string axes = metaValue<std::string>(file, *content.metadata, kAxes);
-    for (auto meta = content.metadata->beginMeta(); meta != content.metadata->endMeta(); ++meta)
+    for (const char axis : metaValue<std::string>(file, metadata, kAxes)) {
+        if (axis < 'x' || axis > 'z')
+            throw InputError(
+                file, fmt::format("axis '{}' of step {}, expected x, y or z", axis, pyramid.stepCount()));
+        pyramid.steps.push_back({axis - 'x', nullptr, nullptr});
+    }
+    for (auto meta = metadata.beginMeta(); meta != metadata.endMeta(); ++meta)
         if (meta->first.starts_with(kSource))
             pyramid.source[meta->first.substr(kSource.size())] = meta->second->str();
+    return pyramid;
+}
 
-    const Parts parts(file, content.grids);
+}  // namespace
+
+Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int64_t* bytesRead) {
+    const std::string file = path.string();
+    Parts parts(path);
+    Pyramid pyramid = readHead(file, parts.metadata());
     pyramid.coarsest.K = pyramid.K;
     pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>("control_points");
     pyramid.coarsest.shape = parts.take<Shape>("shape");
     if (!pyramid.coarsest.shape->tree().hasSameTopology(pyramid.coarsest.controlPoints->tree()))
         throw InputError(file,
                          "the pyramid's parts 'control_points' and 'shape' differ; the file is damaged");
-    for (std::size_t s = 0; s < axes.size(); ++s) {
-        if (axes[s] < 'x' || axes[s] > 'z')
-            throw InputError(file, fmt::format("axis '{}' of step {}, expected x, y or z", axes[s], s));
-        pyramid.steps.push_back({axes[s] - 'x', parts.take<Shape>(fmt::format("shape_{:03}", s)),
-                                 parts.take<DetailGrid>(fmt::format("details_{:03}", s))});
+    for (std::size_t s = static_cast<std::size_t>(finestStep); s < pyramid.steps.size(); ++s) {
+        pyramid.steps[s].shape = parts.take<Shape>(shapeName(s));
+        pyramid.steps[s].details = parts.take<DetailGrid>(detailsName(s));
     }
+    if (bytesRead) *bytesRead = parts.bytesRead();
     return pyramid;
 }
 

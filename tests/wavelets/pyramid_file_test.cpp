@@ -99,6 +99,70 @@ TEST(PyramidFile, RefusesWhatIsNotAPyramid) {
     EXPECT_THROW(readPyramid(folder / "text.vdb"), InputError);
 }
 
+TEST(PyramidFile, ReadFromAStepOnItGivesThatStepToTheBitAndReadsLess) {
+    const test::TempFolder folder("step");
+    const Pyramid pyramid = analyse(zoo::binaryField(zoo::noisySolids()[0]));
+    writePyramid(folder / "a.vdb", pyramid);
+    std::int64_t before = 0;
+    for (int step = 0; step <= pyramid.stepCount(); ++step) {
+        std::int64_t bytes = 0;
+        const Pyramid read = readPyramid(folder / "a.vdb", step, &bytes);
+        ASSERT_EQ(read.stepCount(), pyramid.stepCount());
+        expectSame(*read.field(step).controlPoints, *pyramid.field(step).controlPoints);
+        EXPECT_EQ(read.field(step).transform(), pyramid.field(step).transform());
+        if (step > 0) {
+            EXPECT_LT(bytes, before) << step;
+        }
+        before = bytes;
+    }
+    // Step 0: everything. Step 6, a quarter of the resolution: seen 9 % of it.
+    std::int64_t all = 0, some = 0;
+    readPyramid(folder / "a.vdb", 0, &all);
+    readPyramid(folder / "a.vdb", 6, &some);
+    EXPECT_EQ(all, static_cast<std::int64_t>(std::filesystem::file_size(folder / "a.vdb")));
+    EXPECT_LT(some, all / 4);
+    EXPECT_THROW(readPyramid(folder / "none.vdb", 6), InputError);
+}
+
+// The file with the byte at `at` changed.
+void damage(const std::filesystem::path& from, const std::filesystem::path& to, std::size_t at) {
+    std::string bytes = bytesOf(from);
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+    std::ofstream(to, std::ios::binary) << bytes;
+}
+
+// Where the name of a grid first stands behind the metadata: in its descriptor.
+std::size_t placeOf(const std::filesystem::path& file, const std::string& grid) {
+    return bytesOf(file).find(grid);
+}
+
+TEST(PyramidFile, DamageInFinerStepsIsNotLookedAt) {
+    const test::TempFolder folder("finer");
+    const Pyramid pyramid = small();
+    writePyramid(folder / "whole.vdb", pyramid);
+    // In the middle of the details of step 1.
+    const std::size_t at =
+        (placeOf(folder / "whole.vdb", "details_001") + placeOf(folder / "whole.vdb", "shape_002")) / 2;
+    damage(folder / "whole.vdb", folder / "bad.vdb", at);
+    EXPECT_THROW(readPyramid(folder / "bad.vdb"), InputError);
+    EXPECT_THROW(readPyramid(folder / "bad.vdb", 1), InputError);
+    const Pyramid read = readPyramid(folder / "bad.vdb", 2);
+    expectSame(*read.field(2).controlPoints, *pyramid.field(2).controlPoints);
+}
+
+TEST(PyramidFile, DamageInWhatIsReadIsFound) {
+    const test::TempFolder folder("damaged");
+    writePyramid(folder / "whole.vdb", small());
+    const std::size_t size = bytesOf(folder / "whole.vdb").size();
+    const std::size_t finest = placeOf(folder / "whole.vdb", "shape_000"),
+                      read = placeOf(folder / "whole.vdb", "shape_003");
+    for (std::size_t at = 0; at < size; at += at < 4000 ? 7 : size / 150) {
+        if (at + 8 > finest && at < read) continue;  // the finer steps
+        damage(folder / "whole.vdb", folder / "bad.vdb", at);
+        EXPECT_THROW(readPyramid(folder / "bad.vdb", 3), InputError) << at << " of " << size;
+    }
+}
+
 TEST(PyramidFile, NamesAMissingPart) {
     const test::TempFolder folder("part");
     writePyramid(folder / "whole.vdb", small());
