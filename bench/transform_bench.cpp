@@ -3,40 +3,43 @@
 //
 //     cmake --preset release -DISOWAVE_BENCH=ON && cmake --build --preset release --target transform_bench
 //     build/release/bin/transform_bench [--benchmark_filter=Analyse]
+//     ISOWAVE_BENCH_VOXELS=256 ISOWAVE_BENCH_THREADS=1 build/release/bin/transform_bench
 //
-// The solid is a ball of 220 voxels perforated by a gyroid, turned so that nothing lies along the lattice.
+// The solid is bench/part.h's, 512 voxels across unless said otherwise.
 #include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
 
 #include <chrono>
-#include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <functional>
 
+#include <unistd.h>
+
+#include "base/heap.h"
+#include "part.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
-#include "volume/distance.h"
 #include "volume/fit.h"
+#include "volume/vdb_file.h"
 #include "wavelets/interval.h"
+#include "wavelets/interval_batch.h"
 #include "wavelets/pyramid.h"
+#include "wavelets/pyramid_file.h"
 
 namespace {
 
 using namespace isowave;
-using openvdb::Vec3d;
 
-double perforatedBall(const Vec3d& point) {
-    const Vec3d p = point - Vec3d(128.3, 127.7, 128.1);
-    const double c = 0.8, s = 0.6;  // a rotation about z, then one about x
-    const Vec3d q(c * p[0] - s * p[1], c * (s * p[0] + c * p[1]) - s * p[2],
-                  s * (s * p[0] + c * p[1]) + c * p[2]);
-    const double k = 2 * M_PI / 40;
-    const double gyroid = std::sin(k * q[0]) * std::cos(k * q[1]) + std::sin(k * q[1]) * std::cos(k * q[2]) +
-                          std::sin(k * q[2]) * std::cos(k * q[0]);
-    return std::max(p.length() - 110, gyroid / (1.5 * k));
+int number(const char* variable, int otherwise) {
+    const char* text = std::getenv(variable);
+    return text ? std::atoi(text) : otherwise;
 }
 
 const openvdb::FloatGrid& distance() {
     static const auto grid =
-        distanceFromFunction(perforatedBall, openvdb::CoordBBox(0, 0, 0, 255, 255, 255), 4);
+        bench::sparseDistance(bench::PerforatedPart(number("ISOWAVE_BENCH_VOXELS", 512)), 4);
     return *grid;
 }
 const BSplineField& field() {
@@ -48,36 +51,65 @@ const wavelets::Pyramid& pyramid() {
     return result;
 }
 
-// Seconds of one memcpy of as many float32 as the field has control points.
-double memcpySeconds() {
-    static const double seconds = [] {
-        const auto count = static_cast<std::size_t>(field().controlPointCount());
-        std::vector<float> from(count, 1.0f), to(count);
-        double best = 1e9;
-        for (int i = 0; i < 20; ++i) {
-            const auto begin = std::chrono::steady_clock::now();
-            std::memcpy(to.data(), from.data(), 4 * count);
-            benchmark::DoNotOptimize(to.data());
-            benchmark::ClobberMemory();
-            best = std::min(best,
-                            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-        }
-        return best;
-    }();
-    return seconds;
+double seconds(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// Runs `work` and reports nanoseconds a control point and multiples of the memcpy.
+// Seconds of one memcpy of as many float32 as the field has control points, between buffers that were used before.
+double memcpySeconds() {
+    static const double best = [] {
+        const auto count = static_cast<std::size_t>(field().controlPointCount());
+        std::vector<float> from(count, 1.0f), to(count);
+        double shortest = 1e9;
+        for (int i = 0; i < 20; ++i)
+            shortest = std::min(shortest, seconds([&] {
+                                    std::memcpy(to.data(), from.data(), 4 * count);
+                                    benchmark::DoNotOptimize(to.data());
+                                    benchmark::ClobberMemory();
+                                }));
+        return shortest;
+    }();
+    return best;
+}
+
+// Runs `work`, which returns its result, and reports nanoseconds a control point, multiples of the memcpy, and, where
+// it is about files, the control points' bytes a second. Letting go of the result is not timed.
 template <class Work>
 void measure(benchmark::State& state, const Work& work) {
     memcpySeconds();
-    const auto begin = std::chrono::steady_clock::now();
-    for (auto _ : state) work();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() /
-                           static_cast<double>(state.iterations());
-    state.counters["ns_per_point"] = 1e9 * seconds / static_cast<double>(field().controlPointCount());
-    state.counters["memcpys"] = seconds / memcpySeconds();
+    double total = 0;
+    for (auto _ : state) {
+        const auto begin = std::chrono::steady_clock::now();
+        const auto result = work();
+        const double one = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        benchmark::DoNotOptimize(&result);
+        state.SetIterationTime(one);
+        total += one;
+    }
+    const double mean = total / static_cast<double>(state.iterations());
+    const auto points = static_cast<double>(field().controlPointCount());
+    state.counters["points"] = points;
+    state.counters["ns_per_point"] = 1e9 * mean / points;
+    state.counters["memcpys"] = mean / memcpySeconds();
+    state.counters["MB_per_s"] = 4e-6 * points / mean;
 }
+#define ISOWAVE_MEASURED(name) BENCHMARK(name)->Unit(benchmark::kMillisecond)->UseManualTime()
+
+// The same bytes into memory that the process has not used before: what any result costs that is not written over
+// an old one.
+void MemcpyIntoFreshMemory(benchmark::State& state) {
+    const auto count = static_cast<std::size_t>(field().controlPointCount());
+    const std::vector<float> from(count, 1.0f);
+    measure(state, [&] {
+        std::unique_ptr<float[]> to(new float[count]);
+        std::memcpy(to.get(), from.data(), 4 * count);
+        benchmark::ClobberMemory();
+        return to;
+    });
+}
+ISOWAVE_MEASURED(MemcpyIntoFreshMemory);
 
 void Interval(benchmark::State& state) {
     const auto n = static_cast<std::size_t>(state.range(0));
@@ -92,44 +124,102 @@ void Interval(benchmark::State& state) {
 }
 BENCHMARK(Interval)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(16)->Arg(17)->Arg(32)->Arg(128)->Arg(1024);
 
-void AnalyseDirection(benchmark::State& state) {
-    measure(state, [&] { wavelets::analyseDirection(field(), static_cast<int>(state.range(0))); });
+void IntervalBatch(benchmark::State& state) {
+    const auto n = static_cast<int>(state.range(0));
+    wavelets::IntervalBatch batch;
+    batch.start(n, wavelets::IntervalBatch::kLanes);
+    for (auto _ : state) {
+        batch.analyse();
+        std::fill_n(batch.left(), 2 * wavelets::IntervalBatch::kLanes, 1.0f);
+        batch.synthesise();
+        benchmark::DoNotOptimize(batch.rows());
+    }
+    state.SetItemsProcessed(state.iterations() * (2 * n + 3) * wavelets::IntervalBatch::kLanes);
 }
-BENCHMARK(AnalyseDirection)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(IntervalBatch)
+    ->Arg(1)
+    ->Arg(2)
+    ->Arg(4)
+    ->Arg(8)
+    ->Arg(12)
+    ->Arg(13)
+    ->Arg(17)
+    ->Arg(32)
+    ->Arg(128)
+    ->Arg(1024);
+
+void AnalyseDirection(benchmark::State& state) {
+    measure(state, [&] { return wavelets::analyseDirection(field(), static_cast<int>(state.range(0))); });
+}
+ISOWAVE_MEASURED(AnalyseDirection)->DenseRange(0, 2);
 
 void SynthesiseDirection(benchmark::State& state) {
     const int axis = static_cast<int>(state.range(0));
     const auto step = wavelets::analyseDirection(field(), axis);
-    measure(state, [&] { wavelets::synthesiseDirection(step.coarse, *step.details, *field().shape, axis); });
+    measure(state,
+            [&] { return wavelets::synthesiseDirection(step.coarse, *step.details, *field().shape, axis); });
 }
-BENCHMARK(SynthesiseDirection)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(SynthesiseDirection)->DenseRange(0, 2);
 
 void AnalyseToOneNode(benchmark::State& state) {
-    measure(state, [] { wavelets::analyse(field()); });
-    state.counters["points"] = static_cast<double>(field().controlPointCount());
+    measure(state, [] { return wavelets::analyse(field()); });
 }
-BENCHMARK(AnalyseToOneNode)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(AnalyseToOneNode);
 
 void SynthesiseFromOneNode(benchmark::State& state) {
-    measure(state, [] { pyramid().field(0); });
+    measure(state, [] { return pyramid().field(0); });
 }
-BENCHMARK(SynthesiseFromOneNode)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(SynthesiseFromOneNode);
 
 void FitDistance(benchmark::State& state) {
-    measure(state, [] { fitDistance(distance()); });
+    measure(state, [] { return fitDistance(distance()); });
 }
-BENCHMARK(FitDistance)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(FitDistance);
 
 void Polygonize(benchmark::State& state) {
-    measure(state, [] { polygonize(field()); });
+    measure(state, [] { return polygonize(field()); });
 }
-BENCHMARK(Polygonize)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(Polygonize);
 
 void Topology(benchmark::State& state) {
     const TriangleMesh mesh = polygonize(field());
-    measure(state, [&] { topologyOf(mesh); });
+    measure(state, [&] { return topologyOf(mesh); });
     state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
 }
-BENCHMARK(Topology)->Unit(benchmark::kMillisecond)->UseRealTime();
+ISOWAVE_MEASURED(Topology);
+
+const std::filesystem::path& scratchFile() {
+    static const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("isowave_bench_" + std::to_string(::getpid()) + ".vdb");
+    return path;
+}
+
+void WritePyramid(benchmark::State& state) {
+    measure(state, [] {
+        wavelets::writePyramid(scratchFile(), pyramid());
+        return 0;
+    });
+    state.counters["file_bytes"] = static_cast<double>(std::filesystem::file_size(scratchFile()));
+}
+ISOWAVE_MEASURED(WritePyramid);
+
+// From this step on: 0 is all of it.
+void ReadPyramid(benchmark::State& state) {
+    wavelets::writePyramid(scratchFile(), pyramid());
+    std::int64_t bytes = 0;
+    measure(state,
+            [&] { return wavelets::readPyramid(scratchFile(), static_cast<int>(state.range(0)), &bytes); });
+    state.counters["bytes_read"] = static_cast<double>(bytes);
+    std::filesystem::remove(scratchFile());
+}
+ISOWAVE_MEASURED(ReadPyramid)->Arg(0)->Arg(3)->Arg(6);
 
 }  // namespace
+
+int main(int argc, char** argv) {
+    isowave::keepFreedMemory();
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(number("ISOWAVE_BENCH_THREADS", 2)));
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+}
