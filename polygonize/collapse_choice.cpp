@@ -1,0 +1,222 @@
+#include "polygonize/collapse_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace isowave {
+namespace {
+
+// A step is thinned to a quarter, a quarter of that and so on, as long as this many times the triangles wanted are
+// left; what is measured starts there.
+constexpr std::int64_t kThinned = 4;
+// Or, for a tolerance, as long as so much of it is left.
+constexpr double kThinningShare = 0.25;
+
+// A mesh of so few triangles is not thinned.
+constexpr std::int64_t kFewTriangles = 2000;
+
+// To rank candidates, so many triangles of level 0 are enough; what is reported is measured from all of them.
+constexpr std::size_t kRankingTriangles = 20'000;
+
+TriangleMesh everyFew(const TriangleMesh& mesh, std::size_t atMost) {
+    TriangleMesh result{mesh.points, {}, {}};
+    const std::size_t stride = std::max<std::size_t>(1, (mesh.triangles.size() + atMost - 1) / atMost);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride)
+        result.triangles.push_back(mesh.triangles[i]);
+    return result;
+}
+
+std::string limitsText(const TopologyLimits& limits) {
+    std::string text;
+    if (limits.maxGenus) text += fmt::format("genus at most {}", *limits.maxGenus);
+    if (limits.minComponent)
+        text +=
+            fmt::format("{}components of at least {:.4g}", text.empty() ? "" : " and ", *limits.minComponent);
+    return text;
+}
+
+}  // namespace
+
+bool TopologyLimits::allow(const MeshTopology& topology) const {
+    if (maxGenus && topology.genus > *maxGenus) return false;
+    return !minComponent || std::all_of(topology.each.begin(), topology.each.end(),
+                                        [&](const auto& c) { return std::abs(c.volume) >= *minComponent; });
+}
+
+BudgetChooser::BudgetChooser(std::vector<StepMesh> steps, const TopologyLimits& limits, std::string name)
+    : steps_(std::move(steps)),
+      name_(std::move(name)),
+      original_(steps_.front().mesh),
+      sample_(everyFew(steps_.front().mesh, kRankingTriangles)) {
+    assert(steps_.front().step == 0);
+    for (const StepMesh& step : steps_)
+        if (limits.allow(step.topology)) allowed_.push_back(&step);
+    if (allowed_.empty())
+        throw InputError(name_, "no step has " + limitsText(limits) + "; loosen the limits");
+}
+
+MeshComparison BudgetChooser::measured(const TriangleMesh& mesh, double enough,
+                                       const Progress& progress) const {
+    return compareMeshes(mesh, steps_.front().mesh, 0, progress, enough);
+}
+
+double BudgetChooser::roughDistance(const TriangleMesh& mesh, const Progress& progress) const {
+    return std::max(original_.distanceFrom(mesh, 0, progress).max,
+                    DistanceTarget(mesh).distanceFrom(sample_, 0, progress).max);
+}
+
+// ---- a number of triangles
+
+struct BudgetChooser::Trial {
+    const StepMesh* from;
+    TriangleMesh mesh;
+    double distance;  // to level 0, from samples
+};
+
+const TriangleMesh& BudgetChooser::thinned(const StepMesh& from, int times, const Progress& progress) {
+    if (times == 0) return from.mesh;
+    const std::pair key{from.step, times};
+    if (const auto found = thinned_.find(key); found != thinned_.end()) return found->second;
+    const TriangleMesh& before = thinned(from, times - 1, progress);
+    return thinned_[key] = thin(before, static_cast<std::int64_t>(before.triangles.size()) / 4, progress);
+}
+
+BudgetChooser::Trial BudgetChooser::collapsed(const StepMesh& from, std::int64_t triangles,
+                                              const Progress& progress) {
+    Trial trial{&from, from.mesh, 0};
+    if (from.topology.triangles > triangles) {
+        int times = 0;
+        for (std::int64_t left = from.topology.triangles / 4; left >= kThinned * triangles; left /= 4)
+            ++times;
+        Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_, from.voxel,
+                          progress);
+        collapse.reduce(triangles, std::numeric_limits<double>::infinity(), progress);
+        trial.mesh = collapse.mesh();
+    }
+    trial.distance = roughDistance(trial.mesh, progress);
+    return trial;
+}
+
+BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& progress) {
+    const auto countOf = [](const StepMesh* step) { return step->topology.triangles; };
+    std::vector<const StepMesh*> tried{allowed_.front()};
+    const auto tryToo = [&](const StepMesh* step) {
+        if (std::find(tried.begin(), tried.end(), step) == tried.end()) tried.push_back(step);
+    };
+    const StepMesh* coarsest = nullptr;  // of those with enough triangles
+    for (const StepMesh* step : allowed_)
+        if (countOf(step) >= triangles) coarsest = step;
+    for (const StepMesh* step : allowed_)
+        if (countOf(step) <= kThinned * triangles && countOf(step) >= triangles) {
+            tryToo(step);
+            break;
+        }
+    if (coarsest) tryToo(coarsest);
+
+    std::string list;
+    std::optional<Trial> best;
+    std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+        Trial trial = collapsed(*tried[i], triangles, progress);
+        const auto count = static_cast<std::int64_t>(trial.mesh.triangles.size());
+        fewest = std::min(fewest, count);
+        if (count <= triangles) {
+            list += fmt::format("{}{} ({:.3g})", list.empty() ? "" : ", ", tried[i]->step, trial.distance);
+            if (!best || trial.distance < best->distance) best = std::move(trial);
+        } else {
+            list +=
+                fmt::format("{}{} (not below {} triangles)", list.empty() ? "" : ", ", tried[i]->step, count);
+        }
+        // Nothing came down so far: the next coarser one.
+        if (i + 1 == tried.size() && !best)
+            for (const StepMesh* step : allowed_)
+                if (step->step > tried[i]->step && step->step > tried.back()->step) {
+                    tried.push_back(step);
+                    break;
+                }
+    }
+    if (!best)
+        throw InputError(name_,
+                         fmt::format("cannot come down to {} triangles; the fewest are {}, because a closed "
+                                     "mesh keeps its holes and parts; ask for that many",
+                                     triangles, fewest));
+    BudgetMesh result{std::move(best->mesh), best->from->step, {}, {}};
+    result.why = tried.size() == 1 ? "the only step tried: " + list
+                                   : "smallest distance to level 0 of the steps tried: " + list;
+    return result;
+}
+
+// ---- a distance
+
+std::optional<TriangleMesh> BudgetChooser::collapsedWithin(const StepMesh& from, double distance,
+                                                           const Progress& progress) {
+    int times = 0;
+    while (from.step == 0 &&
+           static_cast<std::int64_t>(thinned(from, times, progress).triangles.size()) > kFewTriangles &&
+           roughDistance(thinned(from, times + 1, progress), progress) <= kThinningShare * distance)
+        ++times;
+    // What a collapse costs is measured at points, so the true distance is somewhat larger than the largest cost.
+    // The limit on the cost is raised bit by bit, and the last mesh that is proven to be within is the result.
+    constexpr std::array<double, 6> kShares{0.5, 0.7, 0.8, 0.88, 0.94, 1.0};
+    std::optional<TriangleMesh> within;
+    if (from.step == 0) within = from.mesh;
+    Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_, from.voxel, progress);
+    for (const double share : kShares) {
+        collapse.reduce(4, share * distance, progress);
+        TriangleMesh mesh = collapse.mesh();
+        if (measured(mesh, distance, progress).maxBound > distance) break;
+        within = std::move(mesh);
+    }
+    return within;
+}
+
+BudgetMesh BudgetChooser::withinDistance(double distance, const Progress& progress) {
+    std::vector<const StepMesh*> tried{allowed_.front()};
+    // From the coarsest on; those that are far are told from samples.
+    for (auto step = allowed_.rbegin(); step != allowed_.rend() - 1; ++step)
+        if (roughDistance((*step)->mesh, progress) <= distance) {
+            tried.push_back(*step);
+            break;
+        }
+    std::string list;
+    std::optional<BudgetMesh> best;
+    for (const StepMesh* step : tried) {
+        std::optional<TriangleMesh> mesh = collapsedWithin(*step, distance, progress);
+        list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", step->step,
+                            mesh ? fmt::format("{} triangles", mesh->triangles.size()) : "too far");
+        if (mesh && (!best || mesh->triangles.size() < best->mesh.triangles.size()))
+            best = BudgetMesh{std::move(*mesh), step->step, {}, {}};
+    }
+    if (!best)
+        throw InputError(name_,
+                         fmt::format("no step that is allowed stays within {:.4g} of level 0; loosen the "
+                                     "limits or the tolerance",
+                                     distance));
+    best->why = "fewest triangles of the steps tried: " + list;
+    return *std::move(best);
+}
+
+BudgetMesh BudgetChooser::choose(const Budget& budget, const Progress& progress) {
+    BudgetMesh result;
+    switch (budget.kind) {
+        case Budget::Kind::triangles:
+            result = withTriangles(static_cast<std::int64_t>(budget.value), progress);
+            break;
+        case Budget::Kind::distance:
+            result = withinDistance(budget.value, progress);
+            break;
+        case Budget::Kind::none:
+            result = {allowed_.front()->mesh, allowed_.front()->step, "the finest step that is allowed", {}};
+            break;
+    }
+    const double enough = budget.kind == Budget::Kind::distance ? budget.value : 0;
+    result.distance = measured(result.mesh, enough, progress);
+    return result;
+}
+
+}  // namespace isowave
