@@ -10,6 +10,8 @@
 #include "base/error.h"
 #include "polygonize/measure.h"
 #include "polygonize/topology.h"
+#include "polygonize/zero_set.h"
+#include "tools/budgets.h"
 #include "tools/commands.h"
 #include "tools/input.h"
 #include "tools/level_mesh.h"
@@ -24,8 +26,12 @@ constexpr std::int64_t kControlPointsOfOneNode = 4 * 4 * 4;
 
 class Wanted {
   public:
-    Wanted(const Settings& settings, std::string name, MeshFormat format)
-        : name_(std::move(name)), format_(format) {
+    // budgets: every step is made, but a level is written only where the levels are asked for.
+    Wanted(const Settings& settings, std::string name, MeshFormat format, bool budgets)
+        : name_(std::move(name)),
+          format_(format),
+          levels_(!budgets || settings.levels || settings.steps),
+          all_(budgets) {
         if (settings.levels && settings.steps)
             throw UsageError("--levels and --steps exclude each other; level L is step 3L");
         bySteps_ = settings.steps.has_value();
@@ -34,7 +40,11 @@ class Wanted {
         if (range.last) last_ = *range.last * stride();
     }
 
-    bool has(int step) const { return step >= first_ && (!last_ || step <= *last_) && step % stride() == 0; }
+    bool has(int step) const {
+        return levels_ && step >= first_ && (!last_ || step <= *last_) && step % stride() == 0;
+    }
+    // Whether the step is looked at, be it written or not.
+    bool visits(int step) const { return all_ || step == 0 || has(step); }
     MeshFormat format() const { return format_; }
     int first() const { return first_; }
     std::optional<int> last() const { return last_; }
@@ -45,6 +55,7 @@ class Wanted {
             names.push_back(fileName(step));
         return names;
     }
+    std::optional<int> lastVisited() const { return all_ ? std::nullopt : last_; }
     // part_L2.ply, part_s5.ply
     std::string fileName(int step) const {
         return fmt::format("{}_{}{}{}", name_, bySteps_ ? 's' : 'L', step / stride(), extensionOf(format_));
@@ -58,6 +69,7 @@ class Wanted {
 
     std::string name_;
     MeshFormat format_;
+    bool levels_, all_;
     bool bySteps_ = false;
     int first_ = 0;
     std::optional<int> last_;
@@ -84,9 +96,11 @@ TriangleMesh thinned(const TriangleMesh& mesh, std::size_t atMost) {
 // Makes and measures one mesh a step, level 0 first: the others are measured against it.
 class Ladder {
   public:
-    Ladder(const Wanted& wanted, const Settings& settings, const Solid& solid, OutputFolder& out,
-           Console& console, StageClock& clock)
+    Ladder(const Wanted& wanted, Budgets& budgets, const Settings& settings, const Solid& solid,
+           OutputFolder& out, Console& console, StageClock& clock)
         : wanted_(wanted),
+          budgets_(budgets),
+          settings_(settings),
           mesher_(settings, solid.openBorder, LevelMesher::Facts::thinToo, console, clock),
           space_(outputSpace(solid, settings)),
           out_(out),
@@ -95,7 +109,7 @@ class Ladder {
 
     // REQUIRES: steps in ascending order, step 0 first.
     void visit(int step, const BSplineField& field) {
-        if (vanished_ || (step != 0 && !wanted_.has(step))) return;
+        if (vanished_ || !wanted_.visits(step)) return;
         const double begin = clock_.secondsSoFar();
         LevelMesh made = mesher_.make(step, field);
         TriangleMesh& mesh = made.mesh;
@@ -112,9 +126,11 @@ class Ladder {
             level["change"] = changeJson(counts_.value_or(countsOf(made.topology)), countsOf(made.topology));
             counts_ = countsOf(made.topology);
             measure(level, step, mesh);
+            putDeviation(level, field, made.iso, mesh);
             level["seconds"] = clock_.secondsSoFar() - begin;
             levels_.push_back(std::move(level));
         }
+        if (budgets_.wanted() && !vanished_) budgets_.add(step, field, mesh, made.topology);
         if (step != 0) return;
         empty_ = vanished_;
         counts_ = countsOf(made.topology);
@@ -165,7 +181,19 @@ class Ladder {
         json["max_from_level0"] = known ? finite(from.max) : Json(nullptr);
     }
 
+    // null unless asked for: it takes as long as polygonizing several times over.
+    void putDeviation(Json& json, const BSplineField& field, double iso, const TriangleMesh& mesh) {
+        const StageClock::Scope scope(clock_, "measure");
+        const bool known = settings_.deviation && !mesh.triangles.empty();
+        const Deviation deviation =
+            known ? deviationFrom(ZeroSet(field, iso), mesh, console_.progress()) : Deviation{};
+        json["max_deviation"] = known ? finite(deviation.max) : Json(nullptr);
+        json["rms_deviation"] = known ? finite(deviation.rms) : Json(nullptr);
+    }
+
     const Wanted& wanted_;
+    Budgets& budgets_;
+    const Settings& settings_;
     LevelMesher mesher_;
     Space space_;
     OutputFolder& out_;
@@ -191,7 +219,7 @@ PyramidCounts climb(Solid solid, const Wanted& wanted, Ladder& ladder, const std
     if (!solid.pyramid) {
         const StageClock::Scope scope(clock, "analyse");
         wavelets::AnalyseOptions options;
-        if (wanted.last()) options.maxSteps = *wanted.last();
+        if (wanted.lastVisited()) options.maxSteps = *wanted.lastVisited();
         counts.controlPoints = solid.field->controlPointCount();
         const wavelets::Descent descent =
             wavelets::descend(*std::exchange(solid.field, {}), options, console.progress(),
@@ -203,7 +231,7 @@ PyramidCounts climb(Solid solid, const Wanted& wanted, Ladder& ladder, const std
         const StageClock::Scope scope(clock, "synthesise");
         const wavelets::Pyramid& pyramid = *solid.pyramid;
         for (int step = 0; step <= pyramid.stepCount(); ++step)
-            if (step == 0 || wanted.has(step)) ladder.visit(step, pyramid.field(step, console.progress()));
+            if (wanted.visits(step)) ladder.visit(step, pyramid.field(step, console.progress()));
         counts = {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid),
                   pyramid.coarsest.controlPointCount()};
     }
@@ -225,7 +253,8 @@ std::string numberOf(const Json& json) {
     return json.is_number_integer() ? grouped(json.get<std::int64_t>()) : shortNumber(json.get<double>());
 }
 
-std::string tableOf(const Json& report, const std::string& unit) {
+std::string levelsText(const Json& report, const std::string& unit) {
+    if (report["levels"].empty()) return {};
     Table table({"file", "step", "voxel" + unit, "control points", "triangles", "components", "genus",
                  unit.empty() ? "volume" : "volume [mm^3]", "rms to level 0" + unit, "max to level 0" + unit,
                  "closed"});
@@ -237,12 +266,17 @@ std::string tableOf(const Json& report, const std::string& unit) {
                    numberOf(level["max_to_level0"]),
                    level["closed"].get<bool>() && level["manifold"].get<bool>() ? "yes" : "no"});
     }
-    const double ratio = report["coefficients_stored"].get<double>() / report["control_points"].get<double>();
     std::string stories;
     for (const Json& level : report["levels"])
         if (level["step"] != 0 && !level["file"].is_null())
             stories += storyText(level, unit.empty() ? "" : " mm") + "\n";
-    return table.text() + stories +
+    return table.text() + stories;
+}
+
+std::string tableOf(const Json& report, const std::string& unit) {
+    const std::string budgets = report["budgets"].empty() ? "" : Budgets::tableOf(report["budgets"], unit);
+    const double ratio = report["coefficients_stored"].get<double>() / report["control_points"].get<double>();
+    return levelsText(report, unit) + budgets +
            fmt::format("{} coefficients stored for {} control points (x{:.3f})\n",
                        numberOf(report["coefficients_stored"]), numberOf(report["control_points"]), ratio);
 }
@@ -252,8 +286,11 @@ std::string tableOf(const Json& report, const std::string& unit) {
 int runLod(const Settings& settings, Console& console) {
     StageClock clock;
     OutputFolder out(*settings.output, Inputs(settings.files));
-    const Wanted wanted(settings, out.name(), settings.format.value_or(MeshFormat::ply));
+    const MeshFormat format = settings.format.value_or(MeshFormat::ply);
+    Budgets budgets(settings, out.name(), format);
+    const Wanted wanted(settings, out.name(), format, budgets.wanted());
     for (const std::string& file : wanted.fileNames()) out.refuseInput(file);
+    for (const std::string& file : budgets.fileNames()) out.refuseInput(file);
     const std::string name = settings.files[0].string();
     const bool toStdout = settings.jsonFile == "-";
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
@@ -267,9 +304,11 @@ int runLod(const Settings& settings, Console& console) {
         report["input"] = solid.input;
         report["fit"] = solid.fit;
         report["K"] = solid.K();
-        Ladder ladder(wanted, settings, solid, out, console, clock);
+        Ladder ladder(wanted, budgets, settings, solid, out, console, clock);
         const PyramidCounts counts = climb(std::move(solid), wanted, ladder, name, console, clock);
         report["levels"] = ladder.levels();
+        report["budgets"] =
+            budgets.wanted() ? budgets.write(out, space, name, console, clock) : Json(Json::array());
         report["steps"] = counts.steps;
         report["coefficients_stored"] = counts.coefficientsStored;
         report["control_points"] = counts.controlPoints;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "polygonize/zero_set.h"
 #include "tools/commands.h"
 #include "tools/input.h"
 #include "tools/level_mesh.h"
@@ -48,6 +49,11 @@ int runMesh(const Settings& settings, Console& console) {
         step, grouped(topology.triangles), grouped(topology.components), grouped(topology.genus),
         shortNumber(topology.volume), topology.closed() && topology.manifold() ? "closed" : "NOT closed",
         iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K)));
+    if (settings.deviation) {
+        const Deviation d = deviationFrom(ZeroSet(field, iso), mesh, console.progress());
+        console.print(fmt::format("triangles are at most {} from the zero set, rms {}\n", shortNumber(d.max),
+                                  shortNumber(d.rms)));
+    }
     return 0;
 }
 

@@ -41,6 +41,18 @@ std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t hig
     return value;
 }
 
+// A,B,C
+template <class Parse>
+auto list(const std::string& text, Parse parse) {
+    std::vector<decltype(parse(text))> result;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        result.push_back(parse(text.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return result;
+}
+
 constexpr int kMaxStep = 10'000;
 
 // A..B, A.., ..B or A.
@@ -106,7 +118,9 @@ constexpr Command kCommands[] = {
      "out/part "
      "with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes are part_s0.ply, "
      "part_s1.ply, ... "
-     "Level L is step 3L: every axis halved L times. The ladder ends where one node is left, or before the "
+     "Level L is step 3L: every axis halved L times. With a budget there is one mesh a budget "
+     "instead of one a level (give --levels to have both): the step whose topology suits it, with edges "
+     "collapsed; the report says which and why. The ladder ends where one node is left, or before the "
      "first "
      "level at which the whole solid has vanished. A run that fails or is interrupted leaves the folder as "
      "it was.",
@@ -264,6 +278,10 @@ constexpr Option kOptions[] = {
     {"--features", "", "",
      "measure parts, holes and cavities, and say up to which size they vanish (takes longer)", "lod info",
      [](Settings& s, const std::string&) { s.features = true; }},
+    {"--relax", "N", "0", "N rounds of sliding vertices along the surface: larger angles, same zero set",
+     "lod mesh", [](Settings& s, const std::string& v) { s.relax = static_cast<int>(integer(v, 0, 1000)); }},
+    {"--deviation", "", "", "measure how far triangles are from the zero set of the spline", "lod mesh",
+     [](Settings& s, const std::string&) { s.deviation = true; }},
     {"--json", "FILE", "", "the report goes to this file too; - is standard output", "lod curves",
      [](Settings& s, const std::string& v) {
          if (v.empty()) throw UsageError("the name is empty");
@@ -272,6 +290,29 @@ constexpr Option kOptions[] = {
     {"--json", "", "", "print JSON instead of text",
      "info check compare filters curve-levels relief reverse rebuild subdivide",
      [](Settings& s, const std::string&) { s.json = true; }},
+
+    // Meshes by budget.
+    {"--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
+     "lod",
+     [](Settings& s, const std::string& v) {
+         s.budgetTriangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
+     }},
+    {"--ratio", "R,R,...", "", "the same as a share of level 0's triangles (0.01 = 1 %): name_RR", "lod",
+     [](Settings& s, const std::string& v) {
+         s.budgetRatios = list(v, [](const std::string& r) {
+             const double ratio = positive(r);
+             if (ratio > 1) throw UsageError("'" + r + "' is above 1, all of level 0's triangles");
+             return ratio;
+         });
+     }},
+    {"--tolerance", "D,D,...", "",
+     "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD", "lod",
+     [](Settings& s, const std::string& v) { s.budgetTolerances = list(v, positive); }},
+    {"--max-genus", "N", "", "budgets: only from steps with at most N handles; alone: the finest such step",
+     "lod", [](Settings& s, const std::string& v) { s.maxGenus = integer(v, 0, kHuge); }},
+    {"--min-component", "VOLUME", "",
+     "budgets: only from steps without components smaller than that (world units cubed)", "lod",
+     [](Settings& s, const std::string& v) { s.minComponent = positive(v); }},
 
     // What the solid is.
     {"--iso", "V", "masks: midpoint; labels: not zero; level sets: 0; other images: required",

@@ -1,4 +1,4 @@
-// make = choose the iso-value -> polygonize -> remove specks -> cut off at the border -> count -> tell
+// make = choose the iso-value -> polygonize -> remove specks -> relax -> cut off at the border -> count -> tell
 #include "tools/level_mesh.h"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 
 #include "polygonize/clip.h"
 #include "polygonize/polygonize.h"
+#include "polygonize/relax.h"
 
 namespace isowave::tools {
 namespace {
@@ -231,6 +232,8 @@ LevelMesh LevelMesher::make(int step, const BSplineField& field) {
         level.mesh = polygonizeAt(field, level.iso);
         if (step == 0) rememberLevel0(field, level.mesh);
         removal = removeSpecks(level.mesh, smallest);
+        if (settings_.relax > 0)
+            relax(level.mesh, ZeroSet(field, level.iso), settings_.relax, console_.progress());
         if (openBorder_)
             level.mesh =
                 clipToBox(level.mesh, openBorder_->worldToIndex, openBorder_->low, openBorder_->high);

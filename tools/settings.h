@@ -69,10 +69,19 @@ struct Settings {
     bool protectThin = false;
     bool keepSpecks = false;
     bool features = false;                // measure parts, holes and cavities of level 0
+    int relax = 0;                        // rounds of sliding vertices along the surface
+    bool deviation = false;               // measure triangles against the zero set
     std::optional<std::string> jsonFile;  // "-" = standard output
     bool json = false;
     bool selfIntersections = false;
     std::optional<double> sampling;  // world units between samples of a distance
+
+    // lod: meshes by budget.
+    std::vector<std::int64_t> budgetTriangles;
+    std::vector<double> budgetRatios;      // of level 0's triangles
+    std::vector<double> budgetTolerances;  // world units
+    std::optional<std::int64_t> maxGenus;
+    std::optional<double> minComponent;  // world units^3
 
     // filters, curve-levels, relief.
     std::optional<std::string> scheme, mask;

@@ -64,7 +64,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     ladder({});
     const Json r = report();
     EXPECT_EQ(keysOf(r),
-              (std::set<std::string>{"version", "input", "fit", "K", "levels", "steps", "coefficients_stored",
+              (std::set<std::string>{"version", "input", "fit", "K", "levels", "budgets", "steps", "coefficients_stored",
                                      "control_points", "seconds", "peak_memory_bytes", "threads"}));
     EXPECT_EQ(keysOf(r["input"]), (std::set<std::string>{"path", "kind", "format", "component_type",
                                                          "dimensions", "spacing", "range", "iso", "inverted",
@@ -80,7 +80,8 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                          "speck_volume", "bubbles_removed", "bubble_volume", "iso_shift",
                                          "iso_distance", "volume_at_iso_0", "volume_error", "thin_kept",
                                          "thin_kept_at_iso_0", "features", "change", "rms_to_level0",
-                                         "max_to_level0", "rms_from_level0", "max_from_level0", "seconds"}));
+                                         "max_to_level0", "rms_from_level0", "max_from_level0", "max_deviation",
+                                         "rms_deviation", "seconds"}));
     EXPECT_EQ(r["version"], 1);
     EXPECT_EQ(r["input"]["kind"], "grey image");
     EXPECT_EQ(r["input"]["dimensions"], Json({32, 32, 32}));
