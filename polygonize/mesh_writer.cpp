@@ -1,5 +1,7 @@
 #include "polygonize/mesh_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -12,6 +14,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "polygonize/topology.h"
+#include "volume/mesh_input.h"
 
 namespace isowave {
 namespace {
@@ -217,10 +220,29 @@ bool needsFloat64(const PlacedMesh& mesh) {
 
 // ------------------------------------------------------------------------------------------------- formats
 
+// What STL would leave of the mesh must be enough for readMesh.
+void checkSteps(const std::vector<FloatPoint>& points, const std::string& path) {
+    if (points.empty()) return;
+    float largest = 0, extent = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax_element(
+            points.begin(), points.end(), [&](const auto& p, const auto& q) { return p[axis] < q[axis]; });
+        largest = std::max({largest, (*high)[axis], -(*low)[axis]});
+        extent = std::max(extent, (*high)[axis] - (*low)[axis]);
+    }
+    const float step = std::nextafter(largest, INFINITY) - largest;
+    if (extent < kFewestSteps * step)
+        throw OperationError(path, fmt::format("float32, which is all that STL has, has steps of {:.2g} at "
+                                               "{:g}, fewer than {} across a mesh of {:g}; write PLY, which "
+                                               "can have float64",
+                                               step, largest, kFewestSteps, extent));
+}
+
 void writeStl(const std::filesystem::path& path, const PlacedMesh& mesh, Space space) {
     if (mesh.triangles.size() > 0xffffffffu)
         throw OperationError(path.string(), "STL holds at most 2^32 - 1 triangles; write PLY");
     const std::vector<FloatPoint> points = separateFloats(mesh.points, path.string(), "STL");
+    checkSteps(points, path.string());
     Sink sink(path);
     // Not "solid": that is how the text form begins.
     std::string header = "binary STL by isowave";

@@ -35,7 +35,8 @@ struct MeshWriteOptions {
 //   points of different index are written with different coordinates (STL, GLB): of those that round to the
 //   same float32 triple the first gets it, the others a free one near by, at most 2 float32 steps (at the
 //   size of the mesh's largest coordinate) away on each axis. Where none is free, OperationError names the
-//   format and recommends PLY.
+//   format and recommends PLY. STL is also refused where the mesh is fewer than kFewestSteps (mesh_input.h)
+//   float32 steps across: a part 40 mm across 1 km from the origin, which readMesh would refuse.
 //
 // Normals. PLY nx ny nz, OBJ vn, GLB NORMAL; STL has its facets' normals. OFF goes without: many readers
 // refuse the NOFF header. The comment SPACE=LPS or SPACE=RAS stands in STL's 80-byte header, as a comment in

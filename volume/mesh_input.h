@@ -36,10 +36,13 @@ struct MeshRepairReport {
     std::vector<std::string> notes;  // the same in words, one line each, for the user
 };
 
+// Steps of the coordinates' number format that a mesh must be across to be read.
+inline constexpr int kFewestSteps = 1024;
+
 // Any polygon file that CGAL reads: STL (binary, ascii), OBJ, PLY, OFF. Polygons are triangulated as fans.
 // Throws InputError: missing, empty, truncated, malformed (with line or byte), no triangles, a coordinate
-// that is not finite (which point), coordinates beyond 1e15 or so far from the origin that fewer than 1024
-// representable steps are left across the part. No repair beyond that: points as listed (STL corners merged
+// that is not finite (which point), coordinates beyond 1e15 or so far from the origin that fewer than
+// kFewestSteps representable steps are left across the part. No repair beyond that: points as listed (STL corners merged
 // by exact position). info: optional second result.
 TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info = nullptr,
                       const Progress& progress = {});

@@ -207,11 +207,11 @@ void checkPoints(const std::string& name, const std::vector<Point>& points, bool
     }
     // Numbers in [2^e, 2^(e+1)) lie 2^(e-23) apart in float32, 2^(e-52) in float64.
     const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-300)) - (float32 ? 23 : 52));
-    if (extent < 1024 * step) {
+    if (extent < kFewestSteps * step) {
         throw InputError(
             name, fmt::format("coordinates of {:g}, where {} has steps of {:.2g}, on a part {:g} across: "
-                              "fewer than 1024 steps are left; move it to the origin and export again",
-                              largest, float32 ? "float32" : "float64", step, extent));
+                              "fewer than {} steps are left; move it to the origin and export again",
+                              largest, float32 ? "float32" : "float64", step, extent, kFewestSteps));
     }
 }
 
@@ -238,9 +238,15 @@ struct Parsed {
     bool float32 = false;
 };
 
+bool allFloat32(const std::vector<SoupPoint>& points) {
+    const auto isFloat32 = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+    return std::all_of(points.begin(), points.end(), [&](const SoupPoint& p) {
+        return isFloat32(p.x()) && isFloat32(p.y()) && isFloat32(p.z());
+    });
+}
+
 Parsed readStl(const std::string& name, std::string& bytes) {
     Parsed parsed;
-    parsed.float32 = true;
     const bool binary = isBinaryStl(bytes);
     parsed.format = binary ? "binary STL" : "ASCII STL";
     parsed.space = spaceOf(std::string_view(bytes).substr(0, binary ? kStlHeader : bytes.find('\n')));
@@ -254,6 +260,8 @@ Parsed readStl(const std::string& name, std::string& bytes) {
         return CGAL::IO::read_STL(is, soup.points, soup.polygons, parameters);
     });
     if (!parsed.read && !binary) parsed.problem = asciiStlProblem(bytes);
+    // Text may have more digits than float32, as a CAD system that computes in float64 writes them.
+    parsed.float32 = binary || allFloat32(parsed.soup.points);
     return parsed;
 }
 

@@ -14,6 +14,7 @@
 #include "polygonize/fields.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
+#include "volume/mesh_input.h"
 
 namespace isowave {
 namespace {
@@ -395,6 +396,24 @@ TEST(MeshWriter, PlyTurnsToFloat64FarFromTheOrigin) {
     EXPECT_TRUE(read.wide);
     EXPECT_EQ(read.points, far.points);
     EXPECT_EQ(read.normals, far.normals);
+}
+
+// What STL would leave must be enough for the reader, which asks for 1024 steps across.
+TEST(MeshWriter, RefusesStlWhereReadMeshWould) {
+    const fs::path folder = freshFolder("steps"), file = folder / "a.stl";
+    writeMesh(file, ringMesh(1, Vec3d(5e4, 0, 0)), MeshFormat::stl);  // steps of 1/256
+    EXPECT_NO_THROW(isowave::readMesh(file));
+    fs::remove(file);
+    try {
+        writeMesh(file, ringMesh(1, Vec3d(1e6, 0, 0)), MeshFormat::stl);  // of 1/16
+        FAIL() << "was written";
+    } catch (const OperationError& error) {
+        EXPECT_NE(std::string(error.what()).find("steps of 0.062 at 1.00001e+06, fewer than 1024 across"),
+                  std::string::npos)
+            << error.what();
+    }
+    EXPECT_TRUE(fs::is_empty(folder));
+    fs::remove_all(folder);
 }
 
 // Vertices of white noise crowd at the margins around lattice points, 1e-3 voxel apart: 1.4e-4 mm for 0.1 mm

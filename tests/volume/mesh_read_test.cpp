@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -284,6 +285,17 @@ TEST(ReadMesh, RefusesCoordinatesBeyondReason) {
     // 20 across at 1e6: float32 has steps of 1/16 there, 320 of them; at 1e5, 2560.
     EXPECT_REFUSED("a.stl", binaryStl(shapes::sphere(10, 2, {1e6, 0, 0})), "fewer than 1024 steps are left");
     EXPECT_NO_THROW(readBytes("a.stl", binaryStl(shapes::sphere(10, 2, {1e5, 0, 0}))));
+    // Text: float32 where all its numbers are.
+    const auto text = [](const std::string& tip) {
+        std::string facets = "solid x\n";
+        const std::string corners[] = {"1000000 0 0", "1000010 0 0", "1000000 10 0", tip};
+        for (const auto& [a, b, c] : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+            facets += "facet normal 0 0 0\nouter loop\nvertex " + corners[a] + "\nvertex " + corners[b] +
+                      "\nvertex " + corners[c] + "\nendloop\nendfacet\n";
+        return facets + "endsolid x\n";
+    };
+    EXPECT_REFUSED("a.stl", text("1000000 0 10.25"), "fewer than 1024 steps are left");
+    EXPECT_EQ(readBytes("a.stl", text("1000000.01 0 10")).points.size(), 4u);
     const std::string far = replaced(kTetrahedronObj, "v 0 0 0", "v 1e9 0 0");
     EXPECT_NO_THROW(readBytes("a.obj", far));  // decimal: float64
 }
