@@ -162,7 +162,7 @@ std::optional<TriangleMesh> BudgetChooser::collapsedWithin(const StepMesh& from,
         ++times;
     // What a collapse costs is measured at points, so the true distance is somewhat larger than the largest cost.
     // The limit on the cost is raised bit by bit, and the last mesh that is proven to be within is the result.
-    constexpr std::array<double, 6> kShares{0.5, 0.7, 0.8, 0.88, 0.94, 1.0};
+    constexpr std::array<double, 6> kShares{0.25, 0.4, 0.55, 0.7, 0.85, 1.0};
     std::optional<TriangleMesh> within;
     if (from.step == 0) within = from.mesh;
     Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_, from.voxel, progress);

@@ -72,7 +72,7 @@ class DistanceTarget {
 
     // spacing: world units (0.5 = half a millimetre for images); 0 = corners and centroids of triangles only.
     // enough: maxBound need not fall below this; to prove a limit takes fewer samples than to know the maximum to
-    // 1 %, and more of them are allowed.
+    // 1 %, and more of them are allowed. Once a sample is farther than this, the bound is left as it is.
     // An empty `from` gives zeros. The same result, to the bit, for any number of threads.
     OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0, const Progress& progress = {},
                                   double enough = 0) const;

@@ -299,22 +299,24 @@ struct DistanceTarget::Tree {
     // it is close to the maximum or no more than `wanted`.
     // invariant: no point of any piece, nor of those dropped for being certain, is farther than maximum.bound.
     Maximum tighten(std::vector<BoundedPiece> pieces, double found, double restBound, double wanted,
-                    std::int64_t mostSamples, const Progress& progress) const;
+                    bool limit, std::int64_t mostSamples, const Progress& progress) const;
 };
 
 DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedPiece> pieces, double found,
-                                                            double restBound, double wanted,
+                                                            double restBound, double wanted, bool limit,
                                                             std::int64_t mostSamples,
                                                             const Progress& progress) const {
     Maximum maximum{found, std::max(found, restBound), 0};
     const auto enough = [&] { return std::max({(1 + kTightness) * maximum.found, wanted, restBound}); };
+    // A limit to prove is wanted, and a sample lies beyond it: the rest does not matter.
+    const auto disproved = [&] { return limit && maximum.found > wanted; };
     const auto boundOf = [&] {
         double bound = std::max(maximum.found, restBound);
         for (const BoundedPiece& p : pieces) bound = std::max(bound, p.bound);
         return bound;
     };
     std::vector<std::array<BoundedPiece, 2>> made;
-    for (maximum.bound = boundOf(); maximum.bound > enough() && maximum.samples < mostSamples;
+    for (maximum.bound = boundOf(); maximum.bound > enough() && maximum.samples < mostSamples && !disproved();
          maximum.bound = boundOf()) {
         // This round takes the upper half of the uncertainty; what is certain by now goes.
         const double certain = enough(), now = std::max(certain, (maximum.found + maximum.bound) / 2);
@@ -411,7 +413,7 @@ OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double s
     }
     const std::int64_t most = enough > 0 ? kProvingSamples : std::max(total.samples, kTighteningSamples);
     const Tree::Maximum maximum =
-        tree_->tighten(std::move(pieces), total.max, restBound, wanted, most, progress);
+        tree_->tighten(std::move(pieces), total.max, restBound, wanted, enough > 0, most, progress);
     return {total.distance / total.weight,
             std::sqrt(total.square / total.weight),
             maximum.found,
