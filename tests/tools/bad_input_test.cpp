@@ -630,15 +630,15 @@ TEST(Interrupt, LeavesTheFolderAsItWas) {
               }));
     const auto before = folder.snapshot();
     const Arguments command = lod(folder, "a.nrrd", {"--iso", "10"});
-    const auto atWork = [&] { return fs::exists(folder / "out"); };  // the hidden folder is made in it
-    const auto meshWritten = [&] {
+    const auto atWork = [&](pid_t) { return fs::exists(folder / "out"); };  // the hidden folder is made in it
+    const auto meshWritten = [&](pid_t) {
         if (!fs::exists(folder / "out")) return false;
         for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
             if (entry.path().extension() == ".ply") return true;
         return false;
     };
-    for (const std::function<bool()>& moment :
-         {std::function<bool()>(atWork), std::function<bool()>(meshWritten)}) {
+    for (const std::function<bool(pid_t)>& moment :
+         {std::function<bool(pid_t)>(atWork), std::function<bool(pid_t)>(meshWritten)}) {
         const Result result = isowave(command, {.interruptWhen = moment});
         EXPECT_EQ(result.exitCode, 130) << result.err;
         EXPECT_EQ(result.errorLines(), 1) << result.err;
