@@ -144,6 +144,8 @@ Json fitJson(const Fitting& fitting, const FitReport& report) {
     json["disagreeing"] = report.disagreeing;
     json["repair_passes"] = report.repairPasses;
     json["repaired"] = report.repaired;
+    json["repair_floor"] = report.repairFloor;
+    json["stopped"] = report.repairAgreed ? "agreed" : "pass_limit";
     return json;
 }
 

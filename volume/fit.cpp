@@ -216,13 +216,16 @@ class Repair {
         for (std::size_t i = 0; i < leaves_.leafCount(); ++i) indexOf_[leaves_.leaf(i).origin()] = i;
     }
 
-    void run(FitReport& report, const Progress& progress) {
+    void run(int mostPasses, FitReport& report, const Progress& progress) {
         std::vector<char> active(leaves_.leafCount(), 1);
-        for (int pass = 0; pass < kMostPasses; ++pass) {
+        report.repairFloor = floor_ / field_.K;
+        report.repairAgreed = false;
+        while (report.repairPasses < mostPasses) {
             progress.check();
             std::vector<char> changed(leaves_.leafCount(), 0);
             const std::int64_t count = onePass(active, changed);
-            if (count == 0) return;
+            report.repairAgreed = count == 0;
+            if (report.repairAgreed) return;
             report.repaired += count;
             ++report.repairPasses;
             active = neighboursOf(changed);
@@ -230,9 +233,6 @@ class Repair {
     }
 
   private:
-    // White noise at 50 % takes 20 passes; a pass that many times over means that the repair cannot succeed.
-    static constexpr int kMostPasses = 1000;
-
     std::int64_t onePass(const std::vector<char>& active, std::vector<char>& changed) {
         std::atomic<std::int64_t> count{0};
         const openvdb::FloatTree& tree = field_.controlPoints->constTree();
@@ -318,10 +318,10 @@ constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
 // will do: floor and target in voxels.
 constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
 
-FitReport finish(BSplineField& field, double floor, double target, FitReport report,
+FitReport finish(BSplineField& field, double floor, double target, int mostPasses, FitReport report,
                  const Progress& progress) {
     progress("fitting", 0.5);
-    Repair(field, floor, target).run(report, progress);
+    Repair(field, floor, target).run(mostPasses, report, progress);
     countDisagreement(field, report);
     progress("fitting", 1);
     return report;
@@ -384,7 +384,7 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
             laplacianPass(leaves, field.controlPoints->constTree());
         }
     }
-    result = finish(field, kBinaryFloor, kBinaryTarget, result, progress);
+    result = finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, progress);
     if (report) *report = result;
     return field;
 }
@@ -415,7 +415,8 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
             leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
     });
-    FitReport result = finish(field, kDistanceFloor / w, kDistanceTarget / w, {}, progress);
+    FitReport result =
+        finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, progress);
     if (report) *report = result;
     return field;
 }

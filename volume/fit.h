@@ -20,20 +20,28 @@ struct FitReport {
     // Of these, how many disagree in the end. The repair works on those of I and leaves none there unless it gave up;
     // those beside I keep their sign because nothing crosses zero so far from the surface.
     std::int64_t disagreeing = 0;
-    int filterPasses = 0;       // Laplacian passes (fitBinary)
-    int repairPasses = 0;       // passes until no lattice point needed repair
+    int filterPasses = 0;  // Laplacian passes (fitBinary)
+    int repairPasses = 0;  // passes that changed something
+    bool repairAgreed =
+        true;  // it stopped because every lattice point of I had its sign by the floor, not at the limit
+    double repairFloor = 0;     // of K: what s F has to reach for that
     std::int64_t repaired = 0;  // control points changed by the repair, counted once a pass
 };
+
+// Where the repair gives up. White noise at 50 % takes 20 passes: that many times over means that it cannot succeed.
+inline constexpr int kMostRepairPasses = 1000;
 
 struct BinaryFitOptions {
     int passes = 3;  // Laplacian passes; 3 smooths staircases, 0 leaves the ±K weights
     double K = 1.0;
+    int mostRepairPasses = kMostRepairPasses;
 };
 
 struct DistanceFitOptions {
     double halfWidth = 4.0;  // w in voxels: the distance is clamped to ±w and scaled so that ±w becomes ±K
     double band = 2.0;       // b in voxels: nodes with a corner nearer than b are kept. 0 < b <= w
     double K = 1.0;
+    int mostRepairPasses = kMostRepairPasses;
 };
 
 // E§2: ±K weights on I (G dilated by {-1,0,1,2}), `passes` of the discrete Laplacian filter on I, then the

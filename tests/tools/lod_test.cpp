@@ -70,7 +70,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                                          "dimensions", "spacing", "range", "iso", "inverted",
                                                          "open_border", "origin", "direction", "space"}));
     EXPECT_EQ(keysOf(r["fit"]), (std::set<std::string>{"method", "half_width", "band", "lattice_points",
-                                                       "disagreeing", "repair_passes", "repaired"}));
+                                                       "disagreeing", "repair_passes", "repaired", "repair_floor", "stopped"}));
     for (const Json& level : r["levels"])
         EXPECT_EQ(keysOf(level),
                   (std::set<std::string>{"step", "level", "file", "spacing", "control_points", "nodes",
@@ -88,6 +88,8 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     EXPECT_EQ(r["input"]["spacing"], Json({0.5, 0.5, 0.5}));
     EXPECT_EQ(r["fit"]["method"], "distance");
     EXPECT_EQ(r["fit"]["disagreeing"], 0);
+    EXPECT_EQ(r["fit"]["stopped"], "agreed");
+    EXPECT_DOUBLE_EQ(r["fit"]["repair_floor"].get<double>(), 1e-4 / r["fit"]["half_width"].get<double>());
     EXPECT_GT(r["peak_memory_bytes"].get<double>(), 1e6);
     // Of a leaf's 512 lattice points, 4 bytes each, so many are control points.
     const Json& finest = r["levels"][0];
@@ -236,6 +238,9 @@ TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
     EXPECT_EQ(report["input"]["kind"], "mask");
     EXPECT_EQ(report["input"]["iso"], 0.5);
     EXPECT_EQ(report["fit"]["method"], "binary");
+    EXPECT_EQ(report["fit"]["stopped"], "agreed");
+    EXPECT_EQ(report["fit"]["repair_floor"], 0.05);
+    EXPECT_EQ(report["fit"]["filter_passes"], 3);
     EXPECT_EQ(report["levels"][0]["genus"], 1);
 }
 

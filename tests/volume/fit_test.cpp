@@ -73,6 +73,27 @@ TEST(Fit, WhiteNoiseIsRepairedInFewPasses) {
     EXPECT_LE(report.repairPasses, 40);  // seen 16
 }
 
+TEST(Fit, SaysWhetherTheRepairStoppedByAgreementOrAtItsLimit) {
+    const auto noise = zoo::noisySolids()[0];
+    const NodeCollection nodes = nodesFromFunction(noise.inside, noise.box);
+    FitReport whole, cut;
+    fitBinary(nodes, {}, &whole);
+    EXPECT_TRUE(whole.repairAgreed);
+    EXPECT_EQ(whole.repairFloor, 0.05);
+    fitBinary(nodes, {.mostRepairPasses = 2}, &cut);
+    EXPECT_FALSE(cut.repairAgreed);
+    EXPECT_EQ(cut.repairPasses, 2);
+    EXPECT_GT(cut.disagreeing, 0);
+    // One pass more finds that nothing is left to do.
+    fitBinary(nodes, {.mostRepairPasses = whole.repairPasses + 1}, &cut);
+    EXPECT_TRUE(cut.repairAgreed);
+
+    const auto ball = zoo::smoothSolids()[0];
+    fitDistance(*distanceFromFunction(ball.distance, ball.box, 4), {}, &whole);
+    EXPECT_TRUE(whole.repairAgreed);
+    EXPECT_EQ(whole.repairFloor, 1e-4 / 4);
+}
+
 TEST(Fit, KnownPointsAreTheNodesDilatedByMinusOneToTwo) {
     const auto voxel = zoo::thinSolids()[0];  // lattice point (3,-2,7): nodes 2..3, -3..-2, 6..7
     const BSplineField field = zoo::binaryField(voxel);
