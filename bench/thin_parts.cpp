@@ -9,14 +9,14 @@
 //             down-sampling comes to, and the cure that users are told (seung-lab/igneous#103)
 // parts, genus, cavities: of the mesh, specks removed in all rows; volume: against level 0.
 #include <fmt/format.h>
-#include <openvdb/tools/MultiResGrid.h>
-#include <openvdb/tools/VolumeToMesh.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <numbers>
 
+#include "analytic.h"
+#include "multires.h"
 #include "polygonize/level_iso.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/specks.h"
@@ -40,21 +40,6 @@ Vec3d turned(const Vec3d& p, double angle) {
             p[2]};
 }
 
-double box(const Vec3d& p, const Vec3d& half) {
-    return std::max({std::abs(p[0]) - half[0], std::abs(p[1]) - half[1], std::abs(p[2]) - half[2]});
-}
-
-double plate(const Vec3d& at) {
-    const Vec3d p = turned(at, 0.2);
-    double d = box(p - Vec3d(0, 0, 0.13), Vec3d(100.3, 100.4, 6.2));
-    for (int i = 0; i < 36; ++i)
-        d = std::max(d, 1.2 + 6.8 * i / 35 - std::hypot(p[0] + 80 - 32 * (i % 6), p[1] + 80 - 32 * (i / 6)));
-    d = std::min(d, box(p - Vec3d(0, 0, 26.3), Vec3d(70.2, 1.0, 20.0)));
-    for (int i = 0; i < 12; ++i)
-        d = std::min(d, (p - Vec3d(-88 + 16 * i, 40.3, 20.4)).length() - (1 + 3.0 * i / 11));
-    return d;
-}
-
 double gyroid(const Vec3d& at) {
     const Vec3d p = turned(at, 0.64) * (2 * std::numbers::pi / 48);
     const Vec3d s(std::sin(p[0]), std::sin(p[1]), std::sin(p[2])),
@@ -67,7 +52,8 @@ double gyroid(const Vec3d& at) {
 
 openvdb::FloatGrid::Ptr distanceOf(const std::string& solid) {
     if (solid == "plate")
-        return distanceFromFunction(plate, {Coord(-126, -126, -14), Coord(126, 126, 52)}, kHalfWidth);
+        return distanceFromFunction([](const Vec3d& p) { return bench::plate(turned(p, 0.2), 6); },
+                                    {Coord(-126, -126, -14), Coord(126, 126, 52)}, kHalfWidth);
     if (solid == "gyroid") return distanceFromFunction(gyroid, {Coord(-66), Coord(66)}, kHalfWidth);
     if (const auto at = solid.find('@'); at != std::string::npos)
         return distanceFromImage(readImage(solid.substr(0, at)), {.iso = std::stod(solid.substr(at + 1))},
@@ -85,20 +71,6 @@ struct Row {
 Row counted(std::string name, TriangleMesh mesh, double node, std::string iso = {}) {
     removeSpecks(mesh, node);
     return {std::move(name), mesh.triangles.empty() ? MeshTopology{} : topologyOf(mesh), std::move(iso)};
-}
-
-TriangleMesh multires(const openvdb::tools::MultiResGrid<openvdb::FloatTree>& grids, int level) {
-    const auto grid = grids.grid(static_cast<std::size_t>(level));
-    std::vector<openvdb::Vec3s> points;
-    std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*grid, points, quads);
-    TriangleMesh mesh;
-    for (const auto& p : points) mesh.points.push_back({p[0], p[1], p[2]});
-    for (const auto& q : quads) {  // OpenVDB turns its polygons inwards
-        mesh.triangles.push_back({q[0], q[2], q[1]});
-        mesh.triangles.push_back({q[0], q[3], q[2]});
-    }
-    return mesh;
 }
 
 // One level up: inside where any of 2x2x2 is. Lattice point j holds 2j .. 2j + 1.
@@ -148,8 +120,7 @@ int main(int argc, char** argv) {
     const openvdb::FloatGrid::Ptr distance = distanceOf(argv[1]);
     const BSplineField finest = fitDistance(*distance);
     const ThinParts thin(finest);
-    const openvdb::tools::MultiResGrid<openvdb::FloatTree> grids(static_cast<std::size_t>(levels) + 1,
-                                                                 *distance);
+    const bench::MultiRes grids(static_cast<std::size_t>(levels) + 1, *distance);
     openvdb::BoolGrid::Ptr mask = maskOf(*distance);
     const Row start = counted("level 0", polygonize(finest), 0);
     std::cout << "| level | | parts | genus | cavities | volume | |\n|---|---|---|---|---|---|---|\n";
@@ -175,7 +146,7 @@ int main(int argc, char** argv) {
                                    100 * shareInside(values, iso), iso / field.K, moved / std::cbrt(node));
             print(level, kept, start.topology.volume);
         }
-        print(level, counted("multires", multires(grids, level), node), start.topology.volume);
+        print(level, counted("multires", bench::multiresMesh(grids, level), node), start.topology.volume);
         mask = dilatedHalf(*mask);
         print(level, counted("dilate", maskMesh(*mask), node), start.topology.volume);
     });

@@ -1,0 +1,287 @@
+// How far levels and budgets are from what they stand for, beside what users have today, as two markdown tables.
+//
+//     fidelity SOLID [--voxels N] [--only levels|budgets] [--meshes FOLDER]
+//
+//   SOLID     plate, plate-turned, gyroid, trabecular, a closed mesh, or an image followed by @ISO (solids.h)
+//   --voxels  128 by default, along the longest axis; an image is taken as it is
+//   --meshes  where to put the meshes, for scripts/render
+//
+// Equal resolution: levels 1, 2, 3, voxels of 2, 4, 8; measured against the solid's surface.
+//   isowave     fitDistance -> analyse -> polygonize; specks removed, as `isowave lod` does
+//   refined and thinned   the same with refine = 2, then thin() to a quarter: about as many triangles
+//   mean-pool   means of 2x2x2 distances, level by level, marching cubes; clamped to 4 voxels, as isowave's are, and to 16
+//   multires    openvdb::tools::MultiResGrid of the distances clamped to 4, volumeToMesh
+// Equal triangles: 1 % and 0.2 % of level 0's mesh, which all of them get, and are measured against.
+//   isowave     BudgetChooser over all steps, as `isowave lod --ratio` does
+//
+// Columns: genus and components of the mesh; volume against the surface's; distances in voxels of level 0, to the surface and
+// back from it; defects: edges without exactly two triangles that run through them in opposite directions, vertices whose
+// triangles are no single fan; pairs of triangles that cut each other; seconds of wall time from the distances, or level
+// 0's mesh, on.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "base/error.h"
+#include "base/heap.h"
+#include "marching.h"
+#include "multires.h"
+#include "polygonize/collapse_choice.h"
+#include "polygonize/mesh_writer.h"
+#include "polygonize/polygonize.h"
+#include "polygonize/specks.h"
+#include "rivals.h"
+#include "solids.h"
+#include "volume/fit.h"
+#include "wavelets/pyramid.h"
+
+namespace {
+
+using namespace isowave;
+constexpr int kLevels = 3, kStepsPerLevel = 3;
+constexpr double kHalfWidth = 4;
+
+class Clock {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// A surface and what is asked about it again and again.
+struct Reference {
+    explicit Reference(const TriangleMesh& of) : mesh(of), target(of), volume(topologyOf(of).volume) {}
+    const TriangleMesh& mesh;
+    DistanceTarget target;
+    double volume;
+};
+
+struct Row {
+    std::string name;
+    MeshTopology topology;
+    OneSidedDistance to, from;
+    std::int64_t intersections = 0;
+    double volumeError = 0, seconds = 0;
+
+    std::int64_t defects() const {
+        return topology.boundaryEdges + topology.nonManifoldEdges + topology.misorientedEdges +
+               topology.nonManifoldVertices + topology.degenerateTriangles;
+    }
+};
+
+constexpr const char* kHeader =
+    "| | triangles | genus | components | volume | rms to, from | max to, from | defects | cuts | seconds |\n"
+    "|---|---|---|---|---|---|---|---|---|---|\n";
+
+std::string text(const Row& row) {
+    const MeshTopology& t = row.topology;
+    return fmt::format(
+        "| {} | {} | {} | {} | {:+.2f} % | {:.3f}, {:.3f} | {:.2f}, {:.2f} | {} | {} | {:.2f} |\n", row.name,
+        t.triangles, row.defects() > 0 ? "-" : std::to_string(t.genus), t.components, 100 * row.volumeError,
+        row.to.rms, row.from.rms, row.to.max, row.from.max, row.defects(), row.intersections, row.seconds);
+}
+
+class Bench {
+  public:
+    Bench(bench::FidelitySolid solid, std::filesystem::path meshes)
+        : solid_(std::move(solid)),
+          narrow_(bench::clamped(*solid_.distance, kHalfWidth)),
+          meshes_(std::move(meshes)) {}
+
+    void levels() {
+        const Reference truth(solid_.truth);
+        fmt::print("### {}, equal resolution\n\nthe surface: {} triangles, volume {:.0f}\n\n{}", solid_.name,
+                   solid_.truth.triangles.size(), truth.volume, kHeader);
+        makeSteps();
+        print({measured("level 0: isowave", steps_.front().mesh, truth, stepSeconds_.front())});
+        bench::DenseField pooled = bench::denseField(*narrow_), wide = bench::denseField(*solid_.distance);
+        const bench::MultiRes grids(kLevels + 1, *narrow_);
+        std::string ratios;
+        double pooling = 0;
+        for (int level = 1; level <= kLevels; ++level) {
+            const TriangleMesh& plain = steps_[std::size_t(level * kStepsPerLevel)].mesh;
+            const TimedMesh& lean = lean_[std::size_t(level - 1)];
+            const Clock clock;
+            pooled = bench::meanPooled(pooled);
+            const TriangleMesh mean = bench::marchingCubes(pooled);
+            pooling += clock.seconds();
+            wide = bench::meanPooled(wide);
+            const std::vector<Row> rows{
+                measured(fmt::format("level {}: isowave", level), plain, truth,
+                         stepSeconds_[std::size_t(level)]),
+                measured("isowave, refined and thinned", lean.mesh, truth, lean.seconds),
+                measured("mean-pool", mean, truth, pooling),
+                measured("mean-pool, clamped to 16", bench::marchingCubes(wide), truth, pooling),
+                measured("multires", bench::multiresMesh(grids, level), truth, 0)};
+            print(rows);
+            const std::vector<double> kept = rmsOfKept(truth.mesh, {&plain, &lean.mesh, &mean}, 1 << level);
+            for (int own = 0; own < 2; ++own)
+                ratios += fmt::format("| {} {} | {:.2f} | {:.2f} | {:.2f} |\n", level,
+                                      own == 0 ? "as it is" : "refined and thinned",
+                                      rows[own].to.rms / rows[2].to.rms,
+                                      rows[own].from.rms / rows[2].from.rms, kept[own] / kept[2]);
+        }
+        fmt::print(
+            "\nrms over mean-pool's:\n\n| level | to | from | from, where all are near "
+            "|\n|---|---|---|---|\n{}\n",
+            ratios);
+    }
+
+    void budgets() {
+        if (steps_.empty()) makeSteps();
+        const Reference level0(steps_.front().mesh);
+        const auto all = static_cast<std::int64_t>(level0.mesh.triangles.size());
+        fmt::print("### {}, equal triangles\n\nlevel 0: {} triangles\n\n{}", solid_.name, all, kHeader);
+        BudgetChooser chooser(steps_, {}, solid_.name);
+        for (const double share : {0.01, 0.002}) {
+            const auto wanted = static_cast<std::int64_t>(std::round(share * double(all)));
+            const std::string what = fmt::format("{:g} %: ", 100 * share);
+            std::vector<Row> rows;
+            try {
+                Clock clock;
+                const BudgetMesh own = chooser.choose({Budget::Kind::triangles, double(wanted)});
+                rows.push_back(measured(fmt::format("{}isowave (step {})", what, own.step), own.mesh, level0,
+                                        clock.seconds()));
+                std::cerr << solid_.name << ", " << what << own.why << '\n';
+            } catch (const std::exception& error) {
+                std::cerr << error.what() << '\n';
+            }
+            for (const bench::Rival& rival : bench::decimators()) {
+                Clock clock;
+                const TriangleMesh mesh = rival.decimate(level0.mesh, wanted);
+                const double seconds = clock.seconds();
+                if (!mesh.triangles.empty())
+                    rows.push_back(measured((rows.empty() ? what : "") + rival.name, mesh, level0, seconds));
+            }
+            print(rows);
+        }
+        fmt::print("\n");
+    }
+
+  private:
+    void makeSteps() {
+        Clock clock;
+        double others = 0;  // all but levels
+        const BSplineField finest = fitDistance(*narrow_, {.halfWidth = kHalfWidth});
+        wavelets::analyse(finest, {}, {}, [&](int step, const BSplineField& field) {
+            TriangleMesh mesh = polygonize(field);
+            removeSpecks(mesh, step == 0 ? 0 : nodeVolume(field.transform()));
+            if (step % kStepsPerLevel == 0) stepSeconds_.push_back(clock.seconds() - others);
+            const Clock counting;
+            if (mesh.triangles.empty()) return;
+            if (step % kStepsPerLevel == 0 && step > 0 && step <= kLevels * kStepsPerLevel)
+                lean_.push_back(lean(field, stepSeconds_.back()));
+            const MeshTopology topology = topologyOf(mesh);
+            steps_.push_back({step, std::move(mesh), topology, field.transform().voxelSize().length()});
+            others += counting.seconds();
+        });
+    }
+
+    struct TimedMesh {
+        TriangleMesh mesh;
+        double seconds;
+    };
+    // Polygonized on half the spacing, then collapsed down to the triangles of the whole one.
+    static TimedMesh lean(const BSplineField& field, double secondsBefore) {
+        const Clock clock;
+        constexpr int kRefine = 2;
+        TriangleMesh mesh = polygonize(field, {.refine = kRefine});
+        removeSpecks(mesh, nodeVolume(field.transform()));
+        mesh = thin(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / (kRefine * kRefine));
+        return {std::move(mesh), secondsBefore + clock.seconds()};
+    }
+
+    Row measured(std::string name, const TriangleMesh& mesh, const Reference& reference, double seconds) {
+        Row row{std::move(name), topologyOf(mesh), {}, {}, countSelfIntersections(mesh), 0, seconds};
+        row.to = reference.target.distanceFrom(mesh, 1.0);
+        row.from = DistanceTarget(mesh).distanceFrom(reference.mesh);
+        row.volumeError = row.topology.volume / reference.volume - 1;
+        if (!meshes_.empty()) {
+            std::string file = row.name;
+            for (char& c : file)
+                if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.') c = '_';
+            writeMesh(meshes_ / fmt::format("{}_{}.ply", solid_.name, file), mesh, MeshFormat::ply);
+        }
+        return row;
+    }
+
+    // From the middles of the surface's triangles to each mesh, over those that no mesh is farther from than `limit`: a
+    // part that one of them has lost does not drown what they say of the others.
+    static std::vector<double> rmsOfKept(const TriangleMesh& surface,
+                                         const std::vector<const TriangleMesh*>& meshes, double limit) {
+        std::vector<DistanceTarget> targets;
+        for (const TriangleMesh* mesh : meshes) targets.emplace_back(*mesh);
+        std::vector<double> sums(meshes.size(), 0.0), distances(meshes.size());
+        std::int64_t count = 0;
+        for (const auto& [a, b, c] : surface.triangles) {
+            Point middle;
+            for (int k = 0; k < 3; ++k)
+                middle[k] = (surface.points[a][k] + surface.points[b][k] + surface.points[c][k]) / 3;
+            for (std::size_t i = 0; i < targets.size(); ++i) distances[i] = targets[i].distance(middle);
+            if (*std::max_element(distances.begin(), distances.end()) > limit) continue;
+            ++count;
+            for (std::size_t i = 0; i < targets.size(); ++i) sums[i] += distances[i] * distances[i];
+        }
+        for (double& sum : sums) sum = std::sqrt(sum / double(count));
+        return sums;
+    }
+
+    static void print(const std::vector<Row>& rows) {
+        for (const Row& row : rows) fmt::print("{}", text(row));
+        std::fflush(stdout);
+    }
+
+    bench::FidelitySolid solid_;
+    openvdb::FloatGrid::Ptr narrow_;
+    std::filesystem::path meshes_;
+    std::vector<StepMesh> steps_;
+    std::vector<TimedMesh> lean_;      // by level, from 1
+    std::vector<double> stepSeconds_;  // by level
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string solid, only, meshes;
+    int voxels = 128;
+    bool usage = argc < 2;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (!word.starts_with("--"))
+            solid = word;
+        else if (i + 1 == argc)
+            usage = true;
+        else if (word == "--voxels")
+            voxels = std::atoi(argv[++i]);
+        else if (word == "--only")
+            only = argv[++i];
+        else if (word == "--meshes")
+            meshes = argv[++i];
+        else
+            usage = true;
+    }
+    if (usage || solid.empty() || voxels < 16) {
+        std::cerr << "usage: fidelity plate|plate-turned|gyroid|trabecular|MESH|IMAGE@ISO [--voxels N] "
+                     "[--only levels|budgets] [--meshes FOLDER]\n";
+        return 2;
+    }
+    keepFreedMemory();
+    initializeVdb();
+    try {
+        Bench bench(bench::fidelitySolid(solid, voxels), meshes);
+        if (only != "budgets") bench.levels();
+        if (only != "levels") bench.budgets();
+    } catch (const InputError& error) {
+        std::cerr << error.what() << '\n';
+        return 3;
+    }
+    return 0;
+}
