@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "volume/leaf_words.h"
 #include "volume/tiles.h"
+#include "wavelets/bounds.h"
 #include "wavelets/columns.h"
 #include "wavelets/interval.h"
 #include "wavelets/interval_batch.h"
@@ -417,10 +418,13 @@ void makeFineLeaves(const Setting& setting, ColumnLines& column, FineColumn& out
         }
 }
 
+// From coefficients to fine control points: a batch's synthesise() or gain().
+using ToFine = void (IntervalBatch::*)();
+
 template <int kStride>
 void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
-                       const Setting& setting, const Columns& columns, std::size_t begin, std::size_t end,
-                       Task& task, std::vector<FineColumn>& made) {
+                       const Setting& setting, ToFine toFine, const Columns& columns, std::size_t begin,
+                       std::size_t end, Task& task, std::vector<FineColumn>& made) {
     auto& lines = task.columns(end - begin);
     task.pieces.clear();
     for (std::size_t i = begin; i < end; ++i) {
@@ -445,7 +449,7 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
             batch.left()[lane] = column.inside(piece.line, piece.first - 1) ? -setting.K : setting.K;
             batch.right()[lane] = column.inside(piece.line, after) ? -setting.K : setting.K;
         },
-        [](IntervalBatch& batch) { batch.synthesise(); },
+        [toFine](IntervalBatch& batch) { (batch.*toFine)(); },
         [&](const Piece& piece, IntervalBatch& batch, int lane) {
             const ColumnLines& column = lines[piece.column];
             scatterKnown<kStride>({batch, lane, 1}, column, piece.line,
@@ -495,6 +499,39 @@ openvdb::math::Transform::Ptr scaledAlong(const openvdb::math::Transform& transf
     auto result = transform.copy();
     result->preScale(scale);
     return result;
+}
+
+BSplineField fineField(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
+                       int axis, ToFine toFine, const Progress& progress) {
+    const auto K = static_cast<float>(coarse.K);
+    const Setting setting(axis, K);
+    const Columns columns(fineShape.tree(), axis);
+    std::vector<FineColumn> made(columns.size());
+    const auto synthesiseSome = byAxis(axis, [](auto stride) { return &synthesiseColumns<stride()>; });
+    forEachTask(columns.size(), progress, [&](std::size_t begin, std::size_t end, Task& task) {
+        synthesiseSome(coarse, details, fineShape, setting, toFine, columns, begin, end, task, made);
+    });
+
+    BSplineField fine;
+    fine.K = coarse.K;
+    fine.shape = openvdb::ConstPtrCast<Shape>(fineShape.copy());  // shares the tree
+    fine.controlPoints = openvdb::FloatGrid::create(K);
+    auto& tree = fine.controlPoints->tree();
+    hang(
+        tree, made, [](FineColumn & column) -> auto& { return column; });
+    const auto valueHere = [&fineShape, K] {
+        return [accessor = fineShape.getConstUnsafeAccessor(), K](const openvdb::Coord& c) {
+            return accessor.getValue(c) ? -K : K;
+        };
+    };
+    fillTiles(tree, valueHere);
+    fillRootTiles(
+        tree, fineShape.tree(), [](const openvdb::Coord& c) { return c; }, valueHere);
+
+    const auto transform = scaledAlong(coarse.transform(), axis, 0.5);
+    fine.controlPoints->setTransform(transform);
+    fine.shape->setTransform(transform->copy());
+    return fine;
 }
 
 }  // namespace
@@ -557,35 +594,12 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
 
 BSplineField synthesiseDirection(const BSplineField& coarse, const DetailGrid& details,
                                  const Shape& fineShape, int axis, const Progress& progress) {
-    const auto K = static_cast<float>(coarse.K);
-    const Setting setting(axis, K);
-    const Columns columns(fineShape.tree(), axis);
-    std::vector<FineColumn> made(columns.size());
-    const auto synthesiseSome = byAxis(axis, [](auto stride) { return &synthesiseColumns<stride()>; });
-    forEachTask(columns.size(), progress, [&](std::size_t begin, std::size_t end, Task& task) {
-        synthesiseSome(coarse, details, fineShape, setting, columns, begin, end, task, made);
-    });
+    return fineField(coarse, details, fineShape, axis, &IntervalBatch::synthesise, progress);
+}
 
-    BSplineField fine;
-    fine.K = coarse.K;
-    fine.shape = openvdb::ConstPtrCast<Shape>(fineShape.copy());  // shares the tree
-    fine.controlPoints = openvdb::FloatGrid::create(K);
-    auto& tree = fine.controlPoints->tree();
-    hang(
-        tree, made, [](FineColumn & column) -> auto& { return column; });
-    const auto valueHere = [&fineShape, K] {
-        return [accessor = fineShape.getConstUnsafeAccessor(), K](const openvdb::Coord& c) {
-            return accessor.getValue(c) ? -K : K;
-        };
-    };
-    fillTiles(tree, valueHere);
-    fillRootTiles(
-        tree, fineShape.tree(), [](const openvdb::Coord& c) { return c; }, valueHere);
-
-    const auto transform = scaledAlong(coarse.transform(), axis, 0.5);
-    fine.controlPoints->setTransform(transform);
-    fine.shape->setTransform(transform->copy());
-    return fine;
+BSplineField boundDirection(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
+                            int axis, const Progress& progress) {
+    return fineField(coarse, details, fineShape, axis, &IntervalBatch::gain, progress);
 }
 
 }  // namespace isowave::wavelets

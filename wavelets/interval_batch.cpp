@@ -55,21 +55,31 @@ template <class Pack>
     for (int i = 0; i < count; ++i) rows_[i] = static_cast<float>(rows[i]);
 }
 
-template <class Pack>
-[[gnu::always_inline]] inline void IntervalBatch::synthesiseBy() {
-    constexpr std::ptrdiff_t kStride = kLanes;
+// rows() and ends, in double; returns row 0.
+[[gnu::always_inline]] inline double* IntervalBatch::loadCoefficients() {
     const int count = (2 * n_ + 5) * kLanes;
-    double *const y = row0(), *const out = y + outAt_;
-    double* const rows = y + kFirstCoarseRow * kStride;
+    double* const y = row0();
+    double* const rows = y + kFirstCoarseRow * kLanes;
     for (int i = 0; i < count; ++i) rows[i] = rows_[i];
     for (int i = 0; i < kLanes; ++i) {
-        y[kLeftRow * kStride + i] = ends_[i];
-        y[kRightRow * kStride + i] = ends_[kLanes + i];
+        y[kLeftRow * kLanes + i] = ends_[i];
+        y[kRightRow * kLanes + i] = ends_[kLanes + i];
     }
+    return y;
+}
+
+[[gnu::always_inline]] inline void IntervalBatch::storeFine(const double* out) {
+    const int count = (2 * n_ + 3) * kLanes;
+    const double* const fine = out + kFirstFineRow * kLanes;
+    for (int i = 0; i < count; ++i) rows_[kLanes + i] = static_cast<float>(fine[i]);
+}
+
+template <class Pack>
+[[gnu::always_inline]] inline void IntervalBatch::synthesiseBy() {
+    double *const y = loadCoefficients(), *const out = y + outAt_;
     for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
-        synthesiseRows<Pack>(n_, kStride, y + lane, scratch_.data() + foldedAt_, out + lane);
-    const double* const fine = out + kFirstFineRow * kStride;
-    for (int i = 0; i < count - 2 * kLanes; ++i) rows_[kLanes + i] = static_cast<float>(fine[i]);
+        synthesiseRows<Pack>(n_, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
+    storeFine(out);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -88,6 +98,15 @@ void IntervalBatch::analyse() {
 void IntervalBatch::synthesise() {
     if (four_) return synthesiseByFour();
     synthesiseBy<Two<Double2>>();
+}
+
+// Not on a hot path: two doubles an operation will do.
+void IntervalBatch::gain() {
+    using Pack = Two<Double2>;
+    double *const y = loadCoefficients(), *const out = y + outAt_;  // the map has 0 for the accessory values
+    for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
+        gainRows<Pack>(n_, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
+    storeFine(out);
 }
 
 }  // namespace isowave::wavelets

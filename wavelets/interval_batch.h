@@ -29,12 +29,17 @@ class IntervalBatch {
 
     void analyse();     // fine -> coefficients
     void synthesise();  // coefficients, left() and right() -> fine, but not its rows 0 and 2n+4
+    // How far each coefficient moves at most -> how far each fine control point does: the sum over the absolute values
+    // of the map of synthesise(). Attained, for one control point at a time.
+    void gain();
 
   private:
     template <class Pack>
     void analyseBy();
     template <class Pack>
     void synthesiseBy();
+    double* loadCoefficients();
+    void storeFine(const double* out);
     void analyseByFour();
     void synthesiseByFour();
     double* row0();

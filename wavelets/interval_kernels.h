@@ -8,6 +8,7 @@
 // before row 0 and kBandwidth behind the last.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "wavelets/interval_tables.h"
@@ -177,6 +178,31 @@ ISOWAVE_INLINE void synthesiseRows(int n, std::ptrdiff_t stride, double* y, doub
     recover<Pack>(factors, n, stride, y, kRightRow, true);
     for (int i = kFirstFineRow; i <= last - kAccessory; ++i)
         bandProduct<Pack>(factors.row(n, i), stride, y + i * stride).store(out + i * stride);
+}
+
+// Rows 3 .. 2n+7 of y hold bounds of c and d; then row 4 + j of `out` holds that of f_j. out may not be y.
+template <class Pack>
+ISOWAVE_INLINE void gainRows(int n, std::ptrdiff_t stride, double* y, double* folded, double* out) {
+    if (n <= kShort) return applyShort<Pack>(shortGain(n), stride, y, folded, out);
+    const BandFactors& factors = bandFactors();
+    const int last = rowsOf(n) - 1, ends = kFirstFineRow + BandFactors::kGainRows;
+    for (int i = kFirstFineRow; i < ends; ++i) {
+        const auto& gain = factors.gainAtEnd()[i - kFirstFineRow];
+        Pack left = Pack::product(0.0, Pack::load(y + kFirstCoarseRow * stride)), right = left;
+        for (int row = kFirstCoarseRow; row < static_cast<int>(gain.size()); ++row) {
+            left.addProduct(gain[row], Pack::load(y + row * stride));
+            right.addProduct(gain[row], Pack::load(y + (last - row) * stride));
+        }
+        left.store(out + i * stride);
+        right.store(out + (last - i) * stride);
+    }
+    for (int i = ends; i <= last - ends; ++i) {
+        const BandRow& row = factors.row(n, i);
+        Pack sum = Pack::product(0.0, Pack::load(y + i * stride));
+        for (int s = 0; s <= 2 * kBandwidth; ++s)
+            sum.addProduct(std::abs(row.t[s]), Pack::load(y + (i + s - kBandwidth) * stride));
+        sum.store(out + i * stride);
+    }
 }
 
 }  // namespace isowave::wavelets

@@ -59,19 +59,30 @@ ShortMap makeAnalysis(int n) {
     return map;
 }
 
-ShortMap makeSynthesis(int n) {
+// whole: a (2n+3) x (2n+5) map as synthesisMap() gives it.
+ShortMap foldSynthesis(const Matrix& whole, int n) {
     ShortMap map;
     map.n = n;
     map.in = coefficientRows(n);
     map.in.insert(map.in.begin(), kLeftRow);
     map.in.push_back(kRightRow);
     map.out = fineRows(n);
-    const Matrix whole = synthesisMap(n);
     Matrix m = whole;
     for (int j = 1; j <= 2 * n + 3; ++j) m.col(j) = whole.col(1 + mapIndex(n, map.in[j]));
     fold(m, map);
     return map;
 }
+
+ShortMap makeSynthesis(int n) { return foldSynthesis(synthesisMap(n), n); }
+
+Matrix gainMap(int n) {
+    Matrix gain = synthesisMap(n).cwiseAbs();
+    gain.col(0).setZero();
+    gain.col(2 * n + 4).setZero();
+    return gain;
+}
+
+ShortMap makeGain(int n) { return foldSynthesis(gainMap(n), n); }
 
 using Maps = std::array<ShortMap, kShort + 1>;
 
@@ -133,6 +144,11 @@ const ShortMap& shortSynthesis(int n) {
     return maps[n];
 }
 
+const ShortMap& shortGain(int n) {
+    static const Maps maps = makeMaps(makeGain);
+    return maps[n];
+}
+
 BandFactors::BandFactors() {
     const Matrix t = interleavedMatrix(kReference);
     for (int ne = kFirstOwn; ne <= kReference; ++ne) own_.push_back(factor(shortened(t, ne)));
@@ -142,6 +158,12 @@ BandFactors::BandFactors() {
     const Matrix inverse = rejected.fullPivLu().inverse();
     for (int i = 0; i < kAccessory; ++i)
         for (int j = 0; j < kAccessory; ++j) recovery_[i][j] = static_cast<double>(inverse(i, j));
+    constexpr int kLong = kShort + 1;  // the ends of all longer ones are the same
+    const Matrix gain = gainMap(kLong);
+    for (int i = 0; i < kGainRows; ++i)
+        for (const int row : coefficientRows(kLong))
+            if (row < static_cast<int>(gainAtEnd_[i].size()))
+                gainAtEnd_[i][row] = static_cast<double>(gain(i, 1 + mapIndex(kLong, row)));
 }
 
 const BandFactors& bandFactors() {

@@ -48,6 +48,8 @@ inline constexpr int kLeftRow = -kMargin, kRightRow = -kMargin + 1, kUnwantedRow
 
 const ShortMap& shortAnalysis(int n);   // REQUIRES: 1 <= n <= kShort
 const ShortMap& shortSynthesis(int n);  // REQUIRES: 1 <= n <= kShort
+// Synthesis with the absolute values of its map, 0 for the accessory ones: by how much f moves at most when c and d do.
+const ShortMap& shortGain(int n);  // REQUIRES: 1 <= n <= kShort
 
 // Row i of T = L U with unit U, solved for the unknown: L y = x is y_i = scale x_i - sum lower y; U z = y is
 // z_i = y_i - sum upper z. And row i of T itself.
@@ -79,6 +81,12 @@ class BandFactors {
     const Block& recovery() const { return recovery_; }
     static constexpr std::array<int, 2 * kRejected> kRejectedRows = {0, 1, 2, 4};
 
+    // Absolute values of synthesis where recovery has a say: gainAtEnd()[i][r] of row r for f_i. The first kGainRows of f,
+    // from rows 3 .. 14; the same at the right, mirrored. The rest of f is what T alone makes it.
+    static constexpr int kGainRows = 6;  // the last rejected wavelet ends at row 9
+    using EndGain = std::array<std::array<double, kFirstFineRow + kGainRows + kBandwidth>, kGainRows>;
+    const EndGain& gainAtEnd() const { return gainAtEnd_; }
+
   private:
     // Row i of L and U depends on the leading i rows of T alone, so the head is common to all lengths; it becomes
     // stationary with period 2 (differences fall 3.4x every two rows, below 1e-17 after kHead rows), and the last kTail
@@ -90,6 +98,7 @@ class BandFactors {
 
     std::vector<std::vector<BandRow>> own_;
     Block recovery_;
+    EndGain gainAtEnd_{};
 };
 
 const BandFactors& bandFactors();
