@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "subdivision/diagram_print.h"
 #include "subdivision/exact_solve.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -26,15 +27,6 @@ Diagram line(int first, const char* taps) {
 }
 
 Rational q(const char* text) { return parseRational(text); }
-
-std::string complaint(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 TEST(Rational, IsReadAndWrittenExactly) {
     EXPECT_EQ(toString(q("46/98")), "23/49");

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "base/error.h"
 #include "subdivision/curve_files.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -22,15 +22,6 @@ Diagram line(int first, const char* taps) {
     Diagram diagram;
     for (const auto& value : parseRationals(taps)) diagram.add(at(first++), value);
     return diagram;
-}
-
-std::string complaint(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 Polyline noise(std::size_t points, int dimension, bool closed, unsigned seed) {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -16,21 +15,13 @@
 #include "subdivision/picture_files.h"
 #include "subdivision/relief.h"
 #include "subdivision/relief_report.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-std::string complaint(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 std::filesystem::path fresh(const std::string& name) {
     const auto folder = std::filesystem::temp_directory_path() / "isowave_subdivision_files";

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <random>
 
-#include "base/error.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -15,15 +14,6 @@ namespace {
 using testing::HasSubstr;
 
 Rational q(const char* text) { return parseRational(text); }
-
-std::string complaint(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 // The nodes of a patch in spiral order around one of them, missing ones skipped.
 std::vector<Node> clippedSpiral(const Patch& patch, Node centre, int width) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -19,6 +18,7 @@
 #include "subdivision/surface.h"
 #include "subdivision/triangle_coarsen.h"
 #include "subdivision/triangle_step.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -26,15 +26,6 @@ namespace {
 using testing::HasSubstr;
 using Family = TriangleStep::Family;
 using Fit = TriangleStep::Fit;
-
-std::string complaint(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 // --- shapes
 // ------------------------------------------------------------------------------------------------------
