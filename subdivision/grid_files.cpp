@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace isowave::subdivision {
 
@@ -101,20 +101,12 @@ void requireFinite(const Grid& grid, const std::string& name) {
                   missing, grid.values.size(), first / grid.columns, first % grid.columns));
 }
 
-std::string readAll(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw InputError(path.string(), "cannot be opened; is the name right?");
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    return bytes.str();
-}
-
 }  // namespace
 
 Grid readGrid(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
-    if (extension == ".npy") return parseNpy(readAll(path), path.string());
-    if (extension == ".asc") return parseAsc(readAll(path), path.string());
+    if (extension == ".npy") return parseNpy(readFile(path, "a grid of numbers"), path.string());
+    if (extension == ".asc") return parseAsc(readFile(path, "a grid of numbers"), path.string());
     throw InputError(path.string(), "is of no kind that holds a grid; they are .npy .asc .png .tif");
 }
 

@@ -7,11 +7,11 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -457,19 +457,6 @@ std::string plyBytes(const PolygonMesh& mesh) {
     return bytes;
 }
 
-std::string readAll(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
-    if (std::filesystem::is_directory(path, error))
-        throw InputError(name, "is a folder; expected a mesh file");
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw InputError(name, "cannot be opened; check its permissions");
-    std::string bytes(std::istreambuf_iterator<char>(stream), {});
-    if (bytes.empty()) throw InputError(name, "the file is empty");
-    return bytes;
-}
-
 constexpr std::pair<std::string_view, PolygonFormat> kFormats[] = {
     {".obj", PolygonFormat::obj}, {".off", PolygonFormat::off}, {".ply", PolygonFormat::ply}};
 
@@ -486,7 +473,7 @@ PolygonFormat polygonFormatOf(const std::filesystem::path& path) {
 
 PolygonMesh readPolygonMesh(const std::filesystem::path& path) {
     const PolygonFormat format = polygonFormatOf(path);
-    return parsePolygonMesh(readAll(path), format, path.string());
+    return parsePolygonMesh(readFile(path, "a mesh file"), format, path.string());
 }
 
 PolygonMesh parsePolygonMesh(std::string_view bytes, PolygonFormat format, const std::string& name) {

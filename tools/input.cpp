@@ -557,6 +557,7 @@ InputKind kindOf(const fs::path& path, const Settings& settings) {
         return wavelets::isPyramidFile(path) ? InputKind::pyramid : InputKind::vdb;
     if (isMeshPath(path)) return InputKind::mesh;
     if (isImagePath(path)) return InputKind::image;
+    if (hasExtension(path, ".gz")) throw InputError(path.string(), "is compressed by gzip; gunzip it first");
     throw InputError(path.string(),
                      "is neither an image, a mesh nor a .vdb by its name; a headerless image needs "
                      "--size, --type and --spacing");

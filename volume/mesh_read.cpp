@@ -13,10 +13,10 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "volume/mesh_input.h"
 #include "volume/mesh_read_problems.h"
 
@@ -32,20 +32,6 @@ struct Soup {
 std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return text;
-}
-
-std::string readBytes(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
-    if (std::filesystem::is_directory(path, error))
-        throw InputError(name, "is a folder; expected a mesh file");
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw InputError(name, "cannot be opened; check its permissions");
-    std::string bytes(std::istreambuf_iterator<char>(stream), {});
-    if (bytes.empty()) throw InputError(name, "the file is empty");
-    if (bytes.starts_with("\x1f\x8b")) throw InputError(name, "is compressed by gzip; gunzip it first");
-    return bytes;
 }
 
 // The word after SPACE= in a comment, as 3D Slicer writes it. E.g. "LPS".
@@ -315,12 +301,13 @@ bool isMeshPath(const std::filesystem::path& path) {
 
 TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info, const Progress& progress) {
     const std::string name = path.string(), extension = lowerCase(path.extension().string());
+    if (extension == ".gz") throw InputError(name, "is compressed by gzip; gunzip it first");
     if (!isMeshPath(path)) {
         throw InputError(name,
                          fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off", extension));
     }
     progress("reading", 0.0);
-    std::string bytes = readBytes(path);
+    std::string bytes = readFile(path, "a mesh file");
     progress("reading", 0.2);
     Parsed parsed = extension == ".stl"   ? readStl(name, bytes)
                     : extension == ".obj" ? readObj(bytes)

@@ -62,6 +62,14 @@ const std::vector<BadInput>& rows() {
              return lod(f, "notes.txt");
          },
          {"notes.txt", "--size"}},
+        {"CompressedMesh",
+         3,
+         [](const Folder& f) {
+             std::ofstream(f / "a.stl.gz") << "\x1f\x8b";
+             return lod(f, "a.stl.gz");
+         },
+         {"a.stl.gz", "gunzip"}},
+        {"NoName", 2, [](const Folder& f) { return Arguments{"lod", "", "-o", (f / "out").string()}; }, {"empty"}},
         {"EmptyImage",
          3,
          [](const Folder& f) {

@@ -161,7 +161,7 @@ TEST(ReadMesh, KnowsWhatIsWrongWithBrokenStlFiles) {
     };
     int files = 0;
     for (const auto& [name, words] : {
-             Expected{"empty.stl", "the file is empty"},
+             Expected{"empty.stl", "is empty; expected a mesh file"},
              Expected{"fourVertices.ascii.stl", "line 2: the facet has 4 vertices"},
              Expected{"incorrectFaceCounter.bin.stl",
                       "promises 66 triangles (3384 bytes) but the file holds 4"},
@@ -227,7 +227,7 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
     const fs::path folder = temporary / "folder.stl";
     fs::create_directories(folder);
     EXPECT_THAT([&] { readMesh(folder); }, refuses("is a folder"));
-    EXPECT_REFUSED("a.obj", "", "the file is empty");
+    EXPECT_REFUSED("a.obj", "", "is empty; expected a mesh file");
     EXPECT_REFUSED("a.stl", "\x1f\x8b\x08 zipped", "gunzip it first");
     EXPECT_REFUSED("a.stl", "hello", "too few for an STL");
     EXPECT_REFUSED("a.stl", "solid nothing\nendsolid\n", "no triangles");
