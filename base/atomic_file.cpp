@@ -9,13 +9,20 @@
 #include "base/error.h"
 
 namespace isowave {
+namespace {
+
+constexpr int kMostLinks = 40;  // in a row, as Linux follows them
+
+}  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path place) : place_(std::move(place)) {
     std::error_code error;
-    if (std::filesystem::is_symlink(place_, error)) {
-        // Through the link: replacing the link itself would leave its target as it was.
-        const auto target = std::filesystem::weakly_canonical(place_, error);
-        if (!error) place_ = target;
+    // Through links, also to what is not there yet: replacing the link itself would leave its target as it was.
+    const std::filesystem::path named = place_;
+    for (int links = 0; std::filesystem::is_symlink(place_, error); ++links) {
+        if (links == kMostLinks) throw OperationError(named.string(), "is a link that leads to itself");
+        // An absolute target takes the place of the folder, too.
+        place_ = place_.parent_path() / std::filesystem::read_symlink(place_, error);
     }
     const auto status = std::filesystem::status(place_, error);
     if (std::filesystem::is_directory(status))

@@ -76,6 +76,8 @@ OutputFolder::OutputFolder(const fs::path& folder, Inputs inputs)
         throw OperationError(folder.string(), "is not a name for a folder; give -o out/part");
     if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
         throw OperationError(folder_.string(), "is a file; -o names the folder that gets one mesh a level");
+    if (fs::is_symlink(folder_, error) && !fs::exists(folder_, error))
+        throw OperationError(folder_.string(), "is a link to nothing; make the folder that it leads to");
     // Inside the folder when there is one (it may be a link to another disk), beside it when there is none.
     const fs::path where = fs::exists(folder_, error) ? folder_ : folder_.parent_path();
     const fs::path hidden = where / ("." + name() + ".part-" + std::to_string(::getpid()));

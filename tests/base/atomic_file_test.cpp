@@ -51,6 +51,24 @@ TEST(AtomicFile, FollowsALinkAndKeepsIt) {
     EXPECT_EQ(std::filesystem::file_size(folder / "target.txt"), 7u);
 }
 
+TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
+    const test::TempFolder folder("dangling");
+    std::filesystem::create_directory(folder / "sub");
+    std::filesystem::create_symlink("sub/second.txt", folder / "first.txt");
+    std::filesystem::create_symlink(folder / "target.txt", folder / "sub/second.txt");
+    AtomicFile file(folder / "first.txt");
+    file.stream() << "hello";
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "first.txt"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "sub/second.txt"));
+    EXPECT_EQ(std::filesystem::file_size(folder / "target.txt"), 5u);
+    // Links that lead back to themselves, and into folders that are not there, are places like any other.
+    std::filesystem::create_symlink("circle.txt", folder / "circle.txt");
+    std::filesystem::create_symlink("none/a.txt", folder / "none.txt");
+    EXPECT_THROW(AtomicFile(folder / "circle.txt"), OperationError);
+    EXPECT_THROW(AtomicFile(folder / "none.txt"), OperationError);
+}
+
 TEST(AtomicFile, WritesToAPipeOrDeviceInsteadOfReplacingIt) {
     const test::TempFolder folder("device");
     std::filesystem::create_symlink("/dev/null", folder / "null");

@@ -31,6 +31,17 @@ TEST_F(EarlierResult, IsReplacedFileByFile) {
                                                                      {"out/new", "new new"}}));
 }
 
+TEST(OutputFolder, IsNotMadeBehindALinkToNothing) {
+    const Folder folder;
+    fs::create_directory_symlink("none", folder / "out");
+    EXPECT_THROW(tools::OutputFolder(folder / "out"), OperationError);
+    fs::create_directory(folder / "none");
+    tools::OutputFolder out(folder / "out");
+    write(out.place("a"), "new a");
+    out.commit();
+    EXPECT_EQ(contentOf(folder / "none/a"), "new a");
+}
+
 // A file that was promised but never written is one that cannot be renamed.
 TEST_F(EarlierResult, ComesBackWhenARenamingHalfWayFails) {
     const auto before = folder.snapshot();
