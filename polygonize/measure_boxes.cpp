@@ -10,7 +10,7 @@
 
 namespace isowave {
 
-TriangleBoxes::TriangleBoxes(const TriangleMesh& mesh) {
+TriangleBoxes::TriangleBoxes(const TriangleMesh& mesh) : tree_(mesh.triangles.size(), kInLeaf) {
     assert(!mesh.triangles.empty());
     const std::size_t count = mesh.triangles.size();
     std::vector<std::array<float, 3>> centres(count);  // three times as large, which does not matter
@@ -24,16 +24,13 @@ TriangleBoxes::TriangleBoxes(const TriangleMesh& mesh) {
     });
     order_.resize(count);
     std::iota(order_.begin(), order_.end(), 0u);
-    std::size_t leaves = 1;
-    while (leaves * kInLeaf < count) leaves *= 2;
-    firstLeaf_ = leaves - 1;
-    boxes_.resize(2 * leaves - 1);
-    build(mesh, centres, {0, 0, count});
+    boxes_.resize(tree_.nodeCount());
+    build(mesh, centres, tree_.root());
 }
 
 void TriangleBoxes::build(const TriangleMesh& mesh, const std::vector<std::array<float, 3>>& centres,
                           const Range& range) {
-    if (isLeaf(range)) {
+    if (tree_.isLeaf(range)) {
         boxes_[range.node] = boxOf(mesh, range);
         return;
     }
@@ -56,7 +53,7 @@ void TriangleBoxes::build(const TriangleMesh& mesh, const std::vector<std::array
                                                                      : a < b;
                      });
     const Range left = range.left(), right = range.right();
-    if (range.end - range.begin > 4096) {
+    if (range.size() > 4096) {
         tbb::parallel_invoke([&] { build(mesh, centres, left); }, [&] { build(mesh, centres, right); });
     } else {
         build(mesh, centres, left);

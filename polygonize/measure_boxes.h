@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "volume/halving_tree.h"
 #include "volume/triangle_mesh.h"
 
 namespace isowave {
 
 // Boxes around halves of the triangles, split at the median of their centres along the longest axis that these span,
-// until at most kInLeaf are left. A complete binary tree: node i has children 2i + 1 and 2i + 2; its shape depends on the
-// number of triangles alone. Boxes are float32, rounded outwards.
+// until at most kInLeaf are left. Boxes are float32, rounded outwards.
 // Memory: 16 to 28 bytes a triangle beside the mesh. CGAL's AABB_tree takes 80 (a node of 64, a primitive of 16) and, since
 // it does not visit the nearer box first, a k-d tree of all triangles for a first guess.
 class TriangleBoxes {
@@ -44,54 +44,27 @@ class TriangleBoxes {
             return sum;
         }
     };
-    struct Range {  // a node's triangles
-        std::size_t node = 0, begin = 0, end = 0;
-        std::size_t middle() const { return begin + (end - begin) / 2; }
-        Range left() const { return {2 * node + 1, begin, middle()}; }
-        Range right() const { return {2 * node + 2, middle(), end}; }
-    };
-    bool isLeaf(const Range& range) const { return range.node >= firstLeaf_; }
+    using Range = HalvingTree::Range;  // of triangles
     void build(const TriangleMesh& mesh, const std::vector<std::array<float, 3>>& centres,
                const Range& range);
     Box boxOf(const TriangleMesh& mesh, const Range& range) const;
 
     std::vector<std::uint32_t> order_;  // triangles, leaf after leaf
     std::vector<Box> boxes_;
-    std::size_t firstLeaf_ = 0;
+    HalvingTree tree_;
 };
 
 template <class SquaredTo>
 TriangleBoxes::Nearest TriangleBoxes::nearest(const Point& p, const SquaredTo& squaredTo) const {
-    // invariant: nodes on the stack and below `at` are all that may hold a nearer triangle. One node a level waits.
-    std::array<std::pair<Range, double>, 64> stack;
-    std::size_t waiting = 0;
     Nearest best;
-    Range at{0, 0, order_.size()};
-    double distance = boxes_[0].squaredDistanceTo(p);
-    while (true) {
-        if (distance < best.squared) {
-            if (!isLeaf(at)) {
-                Range near = at.left(), far = at.right();
-                double toNear = boxes_[near.node].squaredDistanceTo(p);
-                double toFar = boxes_[far.node].squaredDistanceTo(p);
-                if (toFar < toNear) {
-                    std::swap(near, far);
-                    std::swap(toNear, toFar);
-                }
-                if (toFar < best.squared) stack[waiting++] = {far, toFar};
-                at = near;
-                distance = toNear;
-                continue;
-            }
-            for (std::size_t i = at.begin; i < at.end; ++i)
+    tree_.nearestFirst(
+        best.squared, [&](std::size_t node) { return boxes_[node].squaredDistanceTo(p); },
+        [&](const Range& leaf) {
+            for (std::size_t i = leaf.begin; i < leaf.end; ++i)
                 if (const double found = squaredTo(order_[i]); found < best.squared)
                     best = {found, order_[i]};
-        }
-        if (waiting == 0) return best;
-        --waiting;
-        at = stack[waiting].first;
-        distance = stack[waiting].second;
-    }
+        });
+    return best;
 }
 
 }  // namespace isowave

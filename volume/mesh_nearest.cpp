@@ -23,16 +23,13 @@ double squaredDistanceTo(const openvdb::BBoxd& box, const Vec3d& point) {
 
 }  // namespace
 
-TriangleHierarchy::TriangleHierarchy(const std::vector<Vec3d>& points,
-                                     const std::vector<Triangle>& triangles) {
+TriangleHierarchy::TriangleHierarchy(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles)
+    : tree_(triangles.size(), kInLeaf) {
     assert(!triangles.empty());
     corners_.reserve(triangles.size());
     for (const Triangle& t : triangles) corners_.push_back({points[t[0]], points[t[1]], points[t[2]]});
-    std::size_t leaves = 1;
-    while (leaves * kInLeaf < corners_.size()) leaves *= 2;
-    firstLeaf_ = leaves - 1;
-    boxes_.resize(2 * leaves - 1);
-    build({0, 0, corners_.size()});
+    boxes_.resize(tree_.nodeCount());
+    build(tree_.root());
 }
 
 void TriangleHierarchy::build(const Range& range) {
@@ -42,14 +39,14 @@ void TriangleHierarchy::build(const Range& range) {
         centres.expand(corners_[i][0] + corners_[i][1] + corners_[i][2]);
     }
     boxes_[range.node] = box;
-    if (isLeaf(range)) return;
+    if (tree_.isLeaf(range)) return;
     const auto axis = static_cast<int>(centres.maxExtent());
     const auto first = corners_.begin();
     std::nth_element(first + std::ptrdiff_t(range.begin), first + std::ptrdiff_t(range.middle()),
                      first + std::ptrdiff_t(range.end), [axis](const Corners& a, const Corners& b) {
                          return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
                      });
-    if (range.end - range.begin > 4096) {
+    if (range.size() > 4096) {
         tbb::parallel_invoke([&] { build(range.left()); }, [&] { build(range.right()); });
     } else {
         build(range.left());
@@ -65,35 +62,15 @@ TriangleHierarchy::Nearest TriangleHierarchy::distanceTo(std::int64_t triangle, 
 }
 
 TriangleHierarchy::Nearest TriangleHierarchy::nearest(const Vec3d& point, Nearest best) const {
-    // invariant: nodes on the stack and below `at` are all that may hold a nearer triangle. One node a level
-    // waits.
-    std::array<std::pair<Range, double>, 64> stack;
-    std::size_t waiting = 0;
-    Range at{0, 0, corners_.size()};
-    double distance = squaredDistanceTo(boxes_[0], point);
-    while (true) {
-        if (distance < best.squared) {
-            if (!isLeaf(at)) {
-                Range near = at.left(), far = at.right();
-                double toNear = squaredDistanceTo(boxes_[near.node], point);
-                double toFar = squaredDistanceTo(boxes_[far.node], point);
-                if (toFar < toNear) {
-                    std::swap(near, far);
-                    std::swap(toNear, toFar);
-                }
-                if (toFar < best.squared) stack[waiting++] = {far, toFar};
-                at = near;
-                distance = toNear;
-                continue;
-            }
-            for (std::size_t i = at.begin; i < at.end; ++i) {
+    tree_.nearestFirst(
+        best.squared, [&](std::size_t node) { return squaredDistanceTo(boxes_[node], point); },
+        [&](const Range& leaf) {
+            for (std::size_t i = leaf.begin; i < leaf.end; ++i) {
                 const Nearest found = distanceTo(std::int64_t(i), point);
                 if (found.squared < best.squared) best = found;
             }
-        }
-        if (waiting == 0) return best;
-        std::tie(at, distance) = stack[--waiting];
-    }
+        });
+    return best;
 }
 
 }  // namespace isowave

@@ -5,15 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "volume/halving_tree.h"
 #include "volume/triangle_mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave {
 
 // Boxes around halves of the triangles, split at the median of their centres along the longest axis that
-// these span, until at most kInLeaf are left. A complete binary tree: node i has children 2i + 1 and 2i + 2,
-// all leaves lie equally deep, and its shape depends on the number of triangles alone, so that halves are
-// built in parallel.
+// these span, until at most kInLeaf are left.
 class TriangleHierarchy {
   public:
     // REQUIRES: at least one triangle.
@@ -35,18 +34,12 @@ class TriangleHierarchy {
     static constexpr std::size_t kInLeaf = 2;
 
     using Corners = std::array<openvdb::Vec3d, 3>;
-    struct Range {  // node's triangles
-        std::size_t node, begin, end;
-        std::size_t middle() const { return begin + (end - begin) / 2; }
-        Range left() const { return {2 * node + 1, begin, middle()}; }
-        Range right() const { return {2 * node + 2, middle(), end}; }
-    };
-    bool isLeaf(const Range& range) const { return range.node >= firstLeaf_; }
+    using Range = HalvingTree::Range;  // of triangles
     void build(const Range& range);
 
     std::vector<Corners> corners_;
     std::vector<openvdb::BBoxd> boxes_;
-    std::size_t firstLeaf_ = 0;
+    HalvingTree tree_;
 };
 
 }  // namespace isowave
