@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "volume/image_kind.h"
 #include "volume/image_source.h"
 
 namespace isowave {
@@ -24,42 +25,6 @@ std::array<double, 3> Image::spacing() const {
 }
 
 namespace {
-
-enum class Kind { none, nrrd, meta, nifti, tiff, png, dicom };
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-Kind kindByName(const fs::path& path) {
-    static const std::map<std::string, Kind> kinds = {
-        {".nrrd", Kind::nrrd}, {".nhdr", Kind::nrrd},  {".mha", Kind::meta},  {".mhd", Kind::meta},
-        {".nii", Kind::nifti}, {".tif", Kind::tiff},   {".tiff", Kind::tiff}, {".png", Kind::png},
-        {".dcm", Kind::dicom}, {".dicom", Kind::dicom}};
-    const std::string name = lower(path.filename().string());
-    if (name.ends_with(".nii.gz")) return Kind::nifti;
-    const auto found = kinds.find(lower(path.extension().string()));
-    return found == kinds.end() ? Kind::none : found->second;
-}
-
-// By the first bytes: scanners name DICOM files as they like.
-Kind kindByContent(const fs::path& path) {
-    char start[132] = {};
-    std::ifstream(path, std::ios::binary).read(start, sizeof start);
-    const std::string text(start, sizeof start);
-    if (text.compare(128, 4, "DICM") == 0) return Kind::dicom;
-    if (text.compare(0, 4, "NRRD") == 0) return Kind::nrrd;
-    if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return Kind::png;
-    if (text.compare(0, 4, std::string("II*\0", 4)) == 0 || text.compare(0, 4, std::string("MM\0*", 4)) == 0)
-        return Kind::tiff;
-    return Kind::none;
-}
-
-Kind kindOf(const fs::path& path) {
-    const Kind kind = kindByName(path);
-    return kind == Kind::none ? kindByContent(path) : kind;
-}
 
 // "slice_2" before "slice_10": runs of digits compare as numbers; ties (01, 1) by the plain text.
 bool naturalLess(const fs::path& a, const fs::path& b) {
@@ -89,8 +54,8 @@ bool naturalLess(const fs::path& a, const fs::path& b) {
 }
 
 template <class Iterator>
-std::map<Kind, std::vector<fs::path>> filesByKind(Iterator files) {
-    std::map<Kind, std::vector<fs::path>> result;
+std::map<FileKind, std::vector<fs::path>> filesByKind(Iterator files) {
+    std::map<FileKind, std::vector<fs::path>> result;
     for (const fs::directory_entry& entry : files) {
         const std::string name = entry.path().filename().string();
         if (!entry.is_regular_file() || name.starts_with('.') || name == "DICOMDIR") continue;
@@ -103,15 +68,15 @@ std::map<Kind, std::vector<fs::path>> filesByKind(Iterator files) {
 // Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
 SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     auto files = filesByKind(fs::directory_iterator(folder));
-    const std::size_t png = files[Kind::png].size(), tiff = files[Kind::tiff].size();
-    if (files[Kind::dicom].empty() && png == 0 && tiff == 0)
+    const std::size_t png = files[FileKind::png].size(), tiff = files[FileKind::tiff].size();
+    if (files[FileKind::dicom].empty() && png == 0 && tiff == 0)
         files = filesByKind(fs::recursive_directory_iterator(folder));
-    if (!files[Kind::dicom].empty()) return openDicomFolder(folder, files[Kind::dicom], options);
+    if (!files[FileKind::dicom].empty()) return openDicomFolder(folder, files[FileKind::dicom], options);
     if (png > 0 && tiff > 0)
         throw InputError(folder.string(),
                          fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
     if (png + tiff == 0) throw InputError(folder.string(), "is a folder without DICOM, TIFF or PNG slices");
-    return openSliceFiles(folder, png > 0 ? files[Kind::png] : files[Kind::tiff], options);
+    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
 }
 
 SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
@@ -119,13 +84,13 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (fs::file_size(path) == 0) throw InputError(name, "is empty; expected an image");
     if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
     if (options.raw) return openRaw(path, options);
-    const Kind kind = kindOf(path);
-    if (kind == Kind::none)
+    const FileKind kind = kindOf(path);
+    if (kind == FileKind::none)
         throw InputError(
             name,
             "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
             "voxels give their size and type");
-    return kind == Kind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
+    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
 }
 
 // Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
@@ -205,8 +170,8 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
 bool isImagePath(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(path, error)) return true;
-    if (kindByName(path) != Kind::none) return true;
-    return fs::is_regular_file(path, error) && kindByContent(path) != Kind::none;
+    if (kindByName(path) != FileKind::none) return true;
+    return fs::is_regular_file(path, error) && kindOf(path) != FileKind::none;
 }
 
 }  // namespace isowave

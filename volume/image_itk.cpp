@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "volume/image_header.h"
+#include "volume/image_kind.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -130,17 +131,15 @@ void silence() {
 itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
     static const bool silent = (silence(), true);
     (void)silent;
-    std::string name = path.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const FileKind kind = kindOf(path);
     itk::ImageIOBase::Pointer io;
-    if (name.ends_with(".mha") || name.ends_with(".mhd"))
+    if (kind == FileKind::meta)
         io = itk::MetaImageIO::New();
-    else if (name.ends_with(".nii") || name.ends_with(".nii.gz"))
+    else if (kind == FileKind::nifti)
         io = itk::NiftiImageIO::New();
-    else if (name.ends_with(".tif") || name.ends_with(".tiff"))
+    else if (kind == FileKind::tiff)
         io = itk::TIFFImageIO::New();
-    else if (name.ends_with(".png"))
+    else if (kind == FileKind::png)
         io = itk::PNGImageIO::New();
     else
         io = itk::NrrdImageIO::New();

@@ -169,7 +169,7 @@ TEST_F(ImageFormat, SlicesStackInTheOrderOfTheirNumbers) {
 TEST_F(ImageFormat, SlicesSayThatTheirHeightIsAssumed) {
     writeSlices<unsigned char>(folder, ".png", {"a", "b"});
     EXPECT_THAT(readImage(folder).warnings,
-                ElementsAre(HasSubstr("PNG slices holds no z spacing; 1 x 1 x 1 mm is assumed")));
+                ElementsAre(HasSubstr("no z spacing in PNG slices; 1 x 1 x 1 mm is assumed")));
     ImageReadOptions options;
     options.spacing = {{0.5, 0.5, 3}};
     const Image image = readImage(folder, options);
@@ -187,9 +187,20 @@ TEST_F(ImageFormat, PagesOfATiffAreSlices) {
     const Image image = readImage(folder / "a.tif");
     EXPECT_EQ(image.size, kSize);
     EXPECT_EQ(image.componentType, "float32");
-    EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("TIFF holds no z spacing")));
+    EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("no z spacing in TIFF")));
     expectPattern<float>(image);
     expectPattern<float>(readImage(folder));  // alone in its folder it is the volume too
+}
+
+TEST_F(ImageFormat, TiffAndPngAreKnownByTheirFirstBytes) {
+    test::writeItk(test::patternImage<float>({7, 5, 4}).GetPointer(), folder / "a.tif");
+    fs::rename(folder / "a.tif", folder / "volume");
+    expectPattern<float>(readImage(folder / "volume"));
+    fs::create_directory(folder / "stack");
+    writeSlices<unsigned char>(folder / "stack", ".png", {"a", "b", "c", "d"});
+    for (const char* name : {"a", "b", "c", "d"})
+        fs::rename(folder / "stack" / (std::string(name) + ".png"), folder / "stack" / name);
+    expectPattern<unsigned char>(readImage(folder / "stack"));
 }
 
 // ------------------------------------------------------------------------------------------ dimensions

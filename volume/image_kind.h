@@ -1,0 +1,17 @@
+// Inside volume/: what kind of image a file is, by its name or, where that says nothing, by its first bytes.
+#pragma once
+
+#include <filesystem>
+
+namespace isowave::imageio {
+
+enum class FileKind { none, nrrd, meta, nifti, tiff, png, dicom };
+
+// By the extension alone, in capitals too; the file need not be there.
+FileKind kindByName(const std::filesystem::path& path);
+
+// By the extension, or else by what the file begins with: scanners name DICOM files as they like. NIfTI and
+// MetaImage are known by their names only.
+FileKind kindOf(const std::filesystem::path& path);
+
+}  // namespace isowave::imageio
