@@ -68,7 +68,7 @@ Description describeImage(const fs::path& path, const Settings& settings, Consol
     d.text += fmt::format("values     {}\n", rangeText(statistics));
     if (!statistics.distinct.empty()) {
         d.text += fmt::format("distinct  ");
-        for (const float value : statistics.distinct) d.text += fmt::format(" {:g}", value);
+        for (const float value : statistics.distinct) d.text += fmt::format(" {}", value);  // as --label takes it
         d.text += "\n";
     }
     return d;

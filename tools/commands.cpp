@@ -325,7 +325,7 @@ constexpr Option kOptions[] = {
      [](Settings& s, const std::string& v) {
          s.pixels = static_cast<std::int32_t>(integer(v, 1, std::int64_t{1} << 22));
      }},
-    {"--label", "L", "every label but 0", "the solid is where a label image is L", kFit,
+    {"--label", "L", "every label but 0", "the solid is where a label image is L (after NIfTI's scaling)", kFit,
      [](Settings& s, const std::string& v) { s.label = number(v); }},
     {"--invert", "", "", "swap inside and outside", kShaped,
      [](Settings& s, const std::string&) { s.invert = true; }},

@@ -196,9 +196,8 @@ struct ImagePlan {
     FitMethod fit = FitMethod::distance;
 };
 
-std::string labelList(const std::vector<float>& values) {
-    return fmt::format("{:g}", fmt::join(values, ", "));
-}
+// With as many digits as tell float32 values apart, so that --label takes what is shown.
+std::string labelList(const std::vector<float>& values) { return fmt::format("{}", fmt::join(values, ", ")); }
 
 bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
     return image.integral && statistics.low >= 0 && !statistics.distinct.empty();
@@ -206,23 +205,40 @@ bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
 
 // Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
 // different may have become one there; only what was float32 in the file is still what it was.
-void refuseRoundedLabel(const Image& image, const std::string& name, double label) {
-    constexpr double kExact = 1 << 24;
-    if (std::abs(label) < kExact) return;
-    if (image.componentType == "float32" && static_cast<double>(static_cast<float>(label)) == label) return;
+constexpr double kExact = 1 << 24;
+
+[[noreturn]] void refuseRoundedLabel(const std::string& name, double label) {
     throw InputError(name, fmt::format("label {:.17g} cannot be told from its neighbours: voxels are kept as "
                                        "float32, exact for labels below {:.0f}; renumber the labels",
                                        label, kExact));
 }
 
-ImagePlan planForLabel(const Image& image, const ImageStatistics& statistics, const std::string& name,
-                       double label) {
-    refuseRoundedLabel(image, name, label);
+// What a voxel with that label holds. A label is the value after scaling: slope k + intercept with a whole k, as
+// float32 rounds it; so 0.3 finds the voxels that a slope of 0.1, itself a float32, has made of 3.
+float voxelOfLabel(const Image& image, const std::string& name, double label) {
+    if (image.componentType.starts_with("float")) {
+        const bool kept =
+            image.componentType == "float32" && static_cast<double>(static_cast<float>(label)) == label;
+        if (std::abs(label) >= kExact && !kept) refuseRoundedLabel(name, label);
+        return static_cast<float>(label);
+    }
+    const auto voxel = [&](double k) { return static_cast<float>(image.slope * k + image.intercept); };
+    const double k = std::round((label - image.intercept) / image.slope);
+    // A thousandth of a step: what is typed has a few digits. Anything else is the voxel's own float32, as `info`
+    // shows it, or no label of this image.
+    if (std::abs(image.slope * k + image.intercept - label) > 1e-3 * std::abs(image.slope))
+        return static_cast<float>(label);
+    if (std::abs(k) >= kExact || voxel(k - 1) == voxel(k) || voxel(k + 1) == voxel(k))
+        refuseRoundedLabel(name, label);
+    return voxel(k);
+}
+
+ImagePlan planForLabel(const ImageStatistics& statistics, const std::string& name, double label) {
     if (!statistics.found)
         throw InputError(name, statistics.distinct.empty()
-                                   ? fmt::format("no voxel has the value {:g}; values run from {:g} to {:g}",
+                                   ? fmt::format("no voxel has the value {}; values run from {:g} to {:g}",
                                                  label, statistics.low, statistics.high)
-                                   : fmt::format("no voxel has the label {:g}; labels found: {}", label,
+                                   : fmt::format("no voxel has the label {}; labels found: {}", label,
                                                  labelList(statistics.distinct)));
     return {"labels", 0.5, FitMethod::binary};
 }
@@ -231,7 +247,7 @@ ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const s
                   const Settings& settings, Console& console) {
     if (settings.label && settings.iso)
         throw UsageError("--label and --iso exclude each other; give one of them");
-    if (settings.label) return planForLabel(image, statistics, name, *settings.label);
+    if (settings.label) return planForLabel(statistics, name, *settings.label);
     if (statistics.low == statistics.high)
         throw InputError(name,
                          fmt::format("every voxel has the value {:g}; there is no surface", statistics.low));
@@ -311,11 +327,11 @@ Solid loadImageSolid(const fs::path& path, const Settings& settings, Console& co
     Solid solid;
     std::optional<ImageStream> stream;
     ImageStatistics statistics;
+    std::optional<float> wanted;  // by --label
     {
         const StageClock::Scope scope(clock, "read");
         stream.emplace(path, imageReadOptions(settings));
-        std::optional<float> wanted;
-        if (settings.label) wanted = static_cast<float>(*settings.label);
+        if (settings.label) wanted = voxelOfLabel(stream->header(), name, *settings.label);
         statistics = statisticsOf(*stream, wanted, console.progress());
         for (const std::string& warning : stream->header().warnings) console.say(warning);
     }
@@ -326,10 +342,8 @@ Solid loadImageSolid(const fs::path& path, const Settings& settings, Console& co
                             image.size[0], image.size[1], image.size[2], image.spacing()[0],
                             image.spacing()[1], image.spacing()[2], plan.kind, nameOf(fitting.method)));
 
-    const ImageSolid shape{.iso = plan.iso,
-                           .invert = settings.invert,
-                           .label = settings.label,
-                           .openBorder = settings.openBorder};
+    const ImageSolid shape{
+        .iso = plan.iso, .invert = settings.invert, .label = wanted, .openBorder = settings.openBorder};
     fit(
         solid, fitting,
         [&] {

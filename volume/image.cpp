@@ -137,6 +137,8 @@ Image imageio::imageOf(const Header& header) {
     const ValueType stored = header.storedType.value_or(header.type);
     image.componentType = nameOf(stored);
     image.integral = header.integral.value_or(isIntegral(stored));
+    image.slope = header.slope;
+    image.intercept = header.intercept;
     image.format = header.format;
     image.warnings = header.warnings;
     return image;

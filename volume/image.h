@@ -31,8 +31,9 @@ struct Image {
     openvdb::math::Mat4d indexToWorld = openvdb::math::Mat4d::identity();
     std::string componentType;          // as stored: "int16", "uint8", "float32", ...
     bool integral = false;              // componentType is an integer type
+    double slope = 1, intercept = 0;    // values = slope * stored + intercept (NIfTI's scl_slope, scl_inter)
     std::string format;                 // "NRRD", "NIfTI", "DICOM series", ...
-    std::vector<std::string> warnings;  // one line each: "TIFF holds no z spacing; 1 assumed, give --spacing"
+    std::vector<std::string> warnings;  // one line each: "no z spacing in TIFF; 1 x 1 x 1 mm is assumed; ..."
 
     std::int64_t voxelCount() const { return size[0] * size[1] * size[2]; }
     // Lengths of the three rows of indexToWorld, in mm.

@@ -15,6 +15,7 @@ struct HeaderFacts {
         size;  // of every axis that the file states, the range axis of a vector image too
     std::optional<ValueType> storedType;
     std::optional<bool> integral;
+    double slope = 1, intercept = 0;                  // values = slope * stored + intercept
     bool onePiece = true;                             // cannot be read a few slices at a time
     std::optional<PlainData> plain;                   // where one file holds the voxels as they are
     std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite

@@ -224,6 +224,8 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     if (header.format == "TIFF") assumeHeight(header);
     header.storedType = facts.storedType;
     header.integral = facts.integral;
+    header.slope = facts.slope;
+    header.intercept = facts.intercept;
     if (isPlain(facts, header)) return openPlain(*facts.plain, header);
     source->slicesPerRead = header.size[2];
     if (!facts.onePiece && io->CanStreamRead())

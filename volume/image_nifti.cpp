@@ -148,6 +148,8 @@ HeaderFacts checkNifti(const fs::path& path) {
             fmt::format("its header says data type {}; expected an integer or floating-point type", code));
     const auto slope = header.at<float>(112), intercept = header.at<float>(116);  // scl_slope, scl_inter
     if (isIntegral(*facts.storedType) && slope != 0) facts.integral = isWhole(slope) && isWhole(intercept);
+    if (std::isfinite(slope) && slope != 0) facts.slope = slope;
+    if (std::isfinite(intercept)) facts.intercept = intercept;
 
     const auto offset = header.at<float>(108);  // vox_offset
     if (!(offset >= 0 && offset < 1e9f))

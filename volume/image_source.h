@@ -35,6 +35,7 @@ struct Header {
     // componentType and integral, where they differ from `type`: NIfTI scales int16 into float32.
     std::optional<ValueType> storedType;
     std::optional<bool> integral;
+    double slope = 1, intercept = 0;  // values that read() gives = slope * stored + intercept
 
     std::int64_t sliceVoxels() const { return size[0] * size[1]; }
 };
