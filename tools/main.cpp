@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <vector>
 
 #include "base/error.h"
 #include "base/heap.h"
@@ -14,6 +15,7 @@
 #include "tools/console.h"
 #include "tools/help.h"
 #include "tools/output.h"
+#include "volume/image.h"
 
 namespace {
 
@@ -21,7 +23,10 @@ namespace tools = isowave::tools;
 
 // Before anything is opened: a result never takes the place of what it is made from.
 void refuseToReplaceInputs(const tools::Settings& settings) {
-    const tools::Inputs inputs(settings.files);
+    std::vector<std::filesystem::path> read = settings.files;
+    for (const auto& file : settings.files)
+        for (const auto& voxels : isowave::voxelFilesOf(file)) read.push_back(voxels);
+    const tools::Inputs inputs(std::move(read));
     for (const auto& place : {settings.output, settings.sheet, settings.svg})
         if (place) inputs.refuse(*place);
     if (settings.jsonFile) inputs.refuse(*settings.jsonFile);

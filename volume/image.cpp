@@ -144,6 +144,27 @@ Image imageio::imageOf(const Header& header) {
     return image;
 }
 
+namespace {
+
+// Adds the files of `folder` that a pattern such as "slice%03d.raw 1 90 1" fits: what stands before and after its %.
+void addFitting(const fs::path& folder, const std::string& pattern, std::vector<fs::path>& files) {
+    const std::size_t percent = pattern.find('%');
+    const fs::path before = folder / pattern.substr(0, percent);
+    const std::size_t after = pattern.find_first_of("diu", percent), blank = pattern.find(' ', percent);
+    const std::string tail =
+        after == std::string::npos || blank <= after ? "" : pattern.substr(after + 1, blank - after - 1);
+    std::error_code ignored;
+    for (auto entry =
+             fs::directory_iterator(before.parent_path().empty() ? "." : before.parent_path(), ignored);
+         entry != fs::directory_iterator(); entry.increment(ignored)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(before.filename().string()) && name.ends_with(tail))
+            files.push_back(entry->path());
+    }
+}
+
+}  // namespace
+
 Image readImageHeader(const fs::path& path, const ImageReadOptions& options) {
     return imageOf(openSource(path, options)->header);
 }
@@ -167,6 +188,25 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
     if (inexact > 0) image.warnings.push_back(roundedText(inexact, image));
     progress("reading", 1);
     return image;
+}
+
+std::vector<fs::path> voxelFilesOf(const fs::path& path) {
+    std::vector<std::string> names;
+    try {
+        const FileKind kind = kindByName(path);
+        if (kind == FileKind::nrrd) names = nrrdVoxelFiles(path);
+        if (kind == FileKind::meta) names = metaVoxelFiles(path);
+    } catch (const InputError&) {
+        return {};  // said when it is read
+    }
+    std::vector<fs::path> files;
+    for (const std::string& name : names) {
+        if (name.find('%') == std::string::npos)
+            files.push_back(path.parent_path() / name);
+        else
+            addFitting(path.parent_path(), name, files);
+    }
+    return files;
 }
 
 bool isImagePath(const fs::path& path) {

@@ -72,6 +72,10 @@ Image readImage(const std::filesystem::path& path, const ImageReadOptions& optio
 // Header only: everything but `values`. Truncation is found where file sizes show it.
 Image readImageHeader(const std::filesystem::path& path, const ImageReadOptions& options = {});
 
+// The files beside an NRRD or MetaImage header that hold its voxels: one, a list, or what a pattern with a number
+// fits. Nothing when the voxels are in the file itself, for other formats, and for a header that cannot be read.
+std::vector<std::filesystem::path> voxelFilesOf(const std::filesystem::path& path);
+
 // Whether a path looks like something readImage() reads (by extension, or a folder).
 bool isImagePath(const std::filesystem::path& path);
 

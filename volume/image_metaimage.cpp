@@ -165,6 +165,17 @@ std::optional<PlainData> checkMetaData(const fs::path& path, const MetaText& tex
 
 }  // namespace
 
+std::vector<std::string> metaVoxelFiles(const fs::path& path) {
+    const MetaText text = metaText(path);
+    const std::string data = text.get("ElementDataFile");
+    if (lower(data) == "local") return {};
+    if (!data.starts_with("LIST")) return {data};
+    std::vector<std::string> names;
+    std::istringstream lines(headerFileText(path).substr(static_cast<std::size_t>(text.end)));
+    for (std::string line; std::getline(lines, line);) names.push_back(trimmed(line));
+    return names;
+}
+
 HeaderFacts checkMetaImage(const fs::path& path) {
     const std::string name = path.string();
     const MetaText text = metaText(path);

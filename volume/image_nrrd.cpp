@@ -124,6 +124,13 @@ std::optional<PlainData> checkNrrdData(const fs::path& path, const NrrdText& tex
 
 }  // namespace
 
+std::vector<std::string> nrrdVoxelFiles(const fs::path& path) {
+    const NrrdText text = nrrdText(path);
+    const auto found = text.field.find("datafile");
+    if (!text.dataFiles.empty() || found == text.field.end()) return text.dataFiles;
+    return {found->second};
+}
+
 HeaderFacts checkNrrd(const fs::path& path) {
     const std::string name = path.string();
     const NrrdText text = nrrdText(path);

@@ -90,6 +90,11 @@ SourcePtr openDicomFile(const std::filesystem::path& path,
 SourcePtr openDicomFolder(const std::filesystem::path& folder,
                           const std::vector<std::filesystem::path>& files, const ImageReadOptions& options);
 
+// What an NRRD or MetaImage header calls the files of its voxels, relative to it: names, or one pattern
+// with a %; nothing when they are in the file itself. Throw InputError.
+std::vector<std::string> nrrdVoxelFiles(const std::filesystem::path& path);
+std::vector<std::string> metaVoxelFiles(const std::filesystem::path& path);
+
 // ----------------------------------------------------------------------------------- image_convert.cpp
 
 // count values of `type` at `in` to float; swap: the bytes of each are in the other order. Returns how many

@@ -40,10 +40,9 @@ TEST(ReplacingTheInput, IsRefusedByEveryCommandThroughEveryName) {
     fs::create_symlink(input, folder / "soft.vdb");
     fs::create_hard_link(input, folder / "hard.vdb");
     fs::create_directory(folder / "sub");
-    const std::vector<std::string> names{input, (folder / "sub/../a.vdb").string(),
-                                         (folder / "soft.vdb").string(), (folder / "hard.vdb").string()};
-    for (const std::string& name : names)
-        for (const Arguments& arguments : writers(input, input, name)) expectRefusal(folder, arguments);
+    for (const Arguments& arguments : writers(input, input, input)) expectRefusal(folder, arguments);
+    for (const char* name : {"sub/../a.vdb", "soft.vdb", "hard.vdb"})
+        expectRefusal(folder, {"analyse", input, "--iso", "0", "-o", (folder / name).string()});
     // And the other way round: the input is named through the link.
     expectRefusal(folder, {"analyse", (folder / "soft.vdb").string(), "--iso", "0", "-o", input});
 }
@@ -68,6 +67,29 @@ TEST(ReplacingTheInput, IsRefusedForASliceOfAFolder) {
     std::ofstream(folder / "slices/1.png") << "a slice";
     expectRefusal(folder, {"mesh", (folder / "slices").string(), "--iso", "0", "--format", "ply", "-o",
                            (folder / "slices/1.png").string()});
+}
+
+TEST(ReplacingTheInput, IsRefusedForTheVoxelsBesideAHeader) {
+    const Folder folder;
+    const auto put = [&](const char* name, const std::string& text) {
+        std::ofstream(folder / name) << text;
+        return (folder / name).string();
+    };
+    const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 2\nencoding: raw\ndata file: ";
+    const std::string meta =
+        "ObjectType = Image\nNDims = 3\nDimSize = 4 4 2\nElementType = MET_UCHAR\n"
+        "ElementDataFile = ";
+    for (const char* voxels : {"a.vdb", "b1.vdb", "b2.vdb"}) put(voxels, std::string(16, 'v'));
+    const std::vector<std::pair<std::string, std::vector<const char*>>> headers{
+        {put("one.nhdr", nrrd + "a.vdb\n"), {"a.vdb"}},
+        {put("list.nhdr", nrrd + "LIST\nb1.vdb\nb2.vdb\n"), {"b2.vdb"}},
+        {put("pattern.nhdr", nrrd + "b%d.vdb 1 2 1\n"), {"b2.vdb"}},
+        {put("one.mhd", meta + "./a.vdb\n"), {"a.vdb"}},
+        {put("list.mhd", meta + "LIST\nb1.vdb\nb2.vdb\n"), {"b1.vdb", "b2.vdb"}},
+        {put("pattern.mhd", meta + "b%01d.vdb 1 2 1\n"), {"b1.vdb"}}};
+    for (const auto& [header, places] : headers)
+        for (const char* place : places)
+            expectRefusal(folder, {"analyse", header, "--iso", "0", "-o", (folder / place).string()});
 }
 
 }  // namespace
