@@ -44,7 +44,11 @@ void takeArguments(const ParsedCommand& parsed, Settings& settings) {
     const auto found = static_cast<int>(parsed.arguments.size());
     const bool optional = command.arguments.front() == '[';
     if (found == command.argumentCount() || (optional && found == 0)) {
-        for (const std::string& argument : parsed.arguments) settings.files.emplace_back(argument);
+        for (const std::string& argument : parsed.arguments) {
+            if (argument.empty())
+                throw UsageError(std::string(command.name) + ": the name of a file is empty");
+            settings.files.emplace_back(argument);
+        }
         return;
     }
     std::string list;
@@ -69,8 +73,8 @@ Settings settingsOf(const ParsedCommand& parsed) {
     Settings settings;
     settings.help = parsed.help;
     if (parsed.help) return settings;
+    takeOptions(parsed, settings);  // first: of "--iso -o out", -o is no number, and out is no argument too many
     takeArguments(parsed, settings);
-    takeOptions(parsed, settings);
     if (parsed.command->needsOutput && !settings.output)
         throw UsageError(std::string(parsed.command->name) + ": -o is missing; say where the result goes");
     return settings;

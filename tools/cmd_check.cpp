@@ -30,8 +30,8 @@ Json componentsOf(const MeshTopology& topology) {
 const char* yesNo(bool yes) { return yes ? "yes" : "no"; }
 
 std::string textOf(const MeshTopology& t, const std::string& name, const Json& intersections) {
-    std::string text =
-        fmt::format("{}: {} triangles, {} vertices\n", name, grouped(t.triangles), grouped(t.vertices));
+    std::string text = fmt::format("{}: {}, {}\n", name, counted(t.triangles, "triangle"),
+                                   counted(t.vertices, "vertex", "vertices"));
     text +=
         fmt::format("closed        {:<5}{} boundary edges\n", yesNo(t.closed()), grouped(t.boundaryEdges));
     text += fmt::format("2-manifold    {:<5}{} edges, {} vertices, {} degenerate triangles break it\n",
@@ -43,8 +43,8 @@ std::string textOf(const MeshTopology& t, const std::string& name, const Json& i
         text +=
             fmt::format("intersecting  {} pairs of triangles\n", grouped(intersections.get<std::int64_t>()));
     const bool whole = t.closed() && t.manifold();
-    text += fmt::format("volume {}, area {}, {} components, genus {}\n", shortNumber(t.volume),
-                        shortNumber(t.area), grouped(t.components), whole ? grouped(t.genus) : "-");
+    text += fmt::format("volume {}, area {}, {}, genus {}\n", shortNumber(t.volume), shortNumber(t.area),
+                        counted(t.components, "component"), whole ? grouped(t.genus) : "-");
     Table table({"component", "triangles", "genus", "volume", "area"});
     for (std::size_t i = 0; i < std::min(kListed, t.each.size()); ++i)
         table.row({std::to_string(i + 1), grouped(t.each[i].triangles),

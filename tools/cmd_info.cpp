@@ -76,6 +76,11 @@ Description describeImage(const fs::path& path, const Settings& settings, Consol
 
 // ---- meshes ----
 
+// How the file's axes are called; what it holds is shown in LPS, as it is read.
+const char* spaceText(Space space) {
+    return space == Space::lps ? " (LPS)" : space == Space::ras ? " (LPS; the file is RAS)" : "";
+}
+
 Description describeMesh(const fs::path& path, Console& console) {
     const LoadedMesh loaded = loadMesh(path, console.progress());
     const MeshTopology topology = topologyOf(mergeEqualPoints(loaded.mesh));
@@ -93,9 +98,11 @@ Description describeMesh(const fs::path& path, Console& console) {
     d.json["boundary_edges"] = topology.boundaryEdges;
     d.json["bounds"] = {low, high};
 
-    d.text = fmt::format("{}: {}, {} triangles, {} vertices\n", path.string(), loaded.format,
-                         grouped(topology.triangles), grouped(topology.vertices));
-    d.text += fmt::format("from       {}\nto         {}\n", triples(Json(low)), triples(Json(high)));
+    d.text =
+        fmt::format("{}: {}, {}, {}\n", path.string(), loaded.format, counted(topology.triangles, "triangle"),
+                    counted(topology.vertices, "vertex", "vertices"));
+    d.text += fmt::format("from       {}{}\nto         {}\n", triples(Json(low)), spaceText(loaded.space),
+                          triples(Json(high)));
     d.text += fmt::format("components {}, volume {}, area {}, {}\n", grouped(topology.components),
                           shortNumber(topology.volume), shortNumber(topology.area),
                           topology.closed() ? "closed" : grouped(topology.boundaryEdges) + " boundary edges");
@@ -134,7 +141,9 @@ Description describeVdb(const fs::path& path) {
                    fmt::format("{}x{}x{}", dim.x(), dim.y(), dim.z()),
                    fmt::format("{:.4g}x{:.4g}x{:.4g}", spacing.x(), spacing.y(), spacing.z())});
     }
-    d.text = fmt::format("{}: {} grids\n", path.string(), content.grids.size()) + table.text();
+    d.text = fmt::format("{}: {}\n", path.string(),
+                         counted(static_cast<std::int64_t>(content.grids.size()), "grid")) +
+             table.text();
     return d;
 }
 

@@ -44,11 +44,12 @@ int runMesh(const Settings& settings, Console& console) {
     writeMesh(*settings.output, mesh, format, {.space = space});
     out.commit();
 
-    console.print(fmt::format(
-        "{}: step {}, {} triangles, {} components, genus {}, volume {}, {}{}\n", settings.output->string(),
-        step, grouped(topology.triangles), grouped(topology.components), grouped(topology.genus),
-        shortNumber(topology.volume), topology.closed() && topology.manifold() ? "closed" : "NOT closed",
-        iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K)));
+    console.print(fmt::format("{}: step {}, {}, {}, genus {}, volume {}, {}{}\n", settings.output->string(),
+                              step, counted(topology.triangles, "triangle"),
+                              counted(topology.components, "component"), grouped(topology.genus),
+                              shortNumber(topology.volume),
+                              topology.closed() && topology.manifold() ? "closed" : "NOT closed",
+                              iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K)));
     if (settings.deviation) {
         const Deviation d = deviationFrom(ZeroSet(field, iso), mesh, console.progress());
         console.print(fmt::format("triangles are at most {} from the zero set, rms {}\n", shortNumber(d.max),

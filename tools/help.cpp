@@ -91,8 +91,10 @@ std::string overview() {
     std::string text =
         "isowave: solids as B-spline zero sets, taken apart by wavelets; a closed mesh at every level.\n\n"
         "usage: isowave COMMAND ARGUMENTS [options]      isowave COMMAND --help      isowave --version\n\n";
+    std::size_t longest = 0;
+    for (const Command& command : commands()) longest = std::max(longest, command.name.size());
     for (const Command& command : commands())
-        text += fmt::format("  {:<12}{}\n", command.name, command.summary);
+        text += fmt::format("  {:<{}}  {}\n", command.name, longest, command.summary);
     text += "\nResults go to standard output, remarks and progress to standard error. Exit codes:\n";
     for (const ExitCode& exit : exitCodes()) text += fmt::format("  {:>3}  {}\n", exit.code, exit.meaning);
     return text;

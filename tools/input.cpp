@@ -415,8 +415,8 @@ Solid loadMeshSolid(const fs::path& path, const Settings& settings, Console& con
     Json dimensions = Json::array();
     for (const double extent : extentOf(mesh))
         dimensions.push_back(static_cast<std::int64_t>(std::ceil(extent / voxel)));
-    console.say(fmt::format("{}: {} triangles, {}x{}x{} voxels of {:.4g}, {} fit", name,
-                            grouped(static_cast<std::int64_t>(mesh.triangles.size())),
+    console.say(fmt::format("{}: {}, {}x{}x{} voxels of {:.4g}, {} fit", name,
+                            counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"),
                             dimensions[0].get<std::int64_t>(), dimensions[1].get<std::int64_t>(),
                             dimensions[2].get<std::int64_t>(), voxel, nameOf(fitting.method)));
 
@@ -438,7 +438,8 @@ Solid loadMeshSolid(const fs::path& path, const Settings& settings, Console& con
     json["repair"] = repair.notes;
     json["space"] = nameOf(loaded.space);
     solid.space = loaded.space;
-    requireSurface(*solid.field, name, "no lattice point lies inside the solid; give more --voxels");
+    requireSurface(*solid.field, name,
+                   "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;
 }
 

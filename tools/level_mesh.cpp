@@ -23,8 +23,7 @@ SolidCounts countsOf(const MeshTopology& topology) {
 
 std::string changeText(const SolidCounts& before, const SolidCounts& now) {
     const auto part = [](std::int64_t from, std::int64_t to, const char* one, const char* many) {
-        return (from == to ? std::string() : grouped(from) + " -> ") + grouped(to) + " " +
-               (to == 1 ? one : many);
+        return (from == to ? std::string() : grouped(from) + " -> ") + counted(to, one, many);
     };
     std::string text = part(before.handles, now.handles, "handle", "handles") + ", " +
                        part(before.parts, now.parts, "part", "parts");
@@ -89,7 +88,8 @@ std::string storyText(const Json& level, const std::string& unit) {
     const auto specks = level["specks_removed"].get<std::int64_t>(),
                bubbles = level["bubbles_removed"].get<std::int64_t>();
     if (specks > 0 || bubbles > 0)
-        addPhrase(story, fmt::format("{} specks and {} bubbles removed", grouped(specks), grouped(bubbles)));
+        addPhrase(story,
+                  fmt::format("{} and {} removed", counted(specks, "speck"), counted(bubbles, "bubble")));
     if (const double shift = level["iso_shift"]; shift != 0 && !level["iso_distance"].is_null()) {
         addPhrase(story, fmt::format("iso {:+.3f} K moves the surface by {:+.3g}{}", shift,
                                      level["iso_distance"].get<double>(), unit));

@@ -111,6 +111,12 @@ std::string grouped(std::int64_t value) {
     return digits;
 }
 
+std::string counted(std::int64_t value, std::string_view one, std::string_view many) {
+    if (value == 1) return fmt::format("1 {}", one);
+    return many.empty() ? fmt::format("{} {}s", grouped(value), one)
+                        : fmt::format("{} {}", grouped(value), many);
+}
+
 std::string shortNumber(double value) {
     if (!std::isfinite(value)) return "-";
     if (std::abs(value) >= 1000 && std::abs(value) < 1e15) return grouped(std::llround(value));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -78,6 +79,8 @@ class Table {
 
 // 1234567 -> "1,234,567"
 std::string grouped(std::int64_t value);
+// "1 triangle", "1,234 triangles"; many: the plural where it is not one + "s" ("vertices").
+std::string counted(std::int64_t value, std::string_view one, std::string_view many = {});
 // Four significant digits; thousands grouped.
 std::string shortNumber(double value);
 // "1.2 GB"

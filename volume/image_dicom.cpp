@@ -462,7 +462,7 @@ SourcePtr openDicomFile(const fs::path& path, const ImageReadOptions&) {
     auto dicom = openImage(path);
     if (dicom->frames() == 1)
         throw InputError(path.string(),
-                         fmt::format("is a 2D image ({} x {}); isowave lod needs a volume; give the folder "
+                         fmt::format("is a 2D image ({} x {}); expected a volume; give the folder "
                                      "of its series",
                                      dicom->columns(), dicom->rows()));
     Header header;

@@ -38,7 +38,8 @@ void reading(const fs::path& path, F&& f) {
     } catch (const InputError&) {
         throw;
     } catch (const itk::ExceptionObject& e) {
-        throw InputError(path.string(), "cannot be read; it is truncated or damaged: " + whatItkSaid(e));
+        throw InputError(path.string(),
+                         "cannot be read (" + whatItkSaid(e) + "); is it truncated or damaged?");
     } catch (const std::exception& e) {
         throw InputError(path.string(), "cannot be read: " + oneLine(e.what()));
     }
@@ -115,7 +116,7 @@ void takeHeader(const fs::path& path, const itk::ImageIOBase& io, Header& header
 
 [[noreturn]] void throwFlat(const fs::path& path, std::int64_t x, std::int64_t y, const std::string& remedy) {
     throw InputError(path.string(),
-                     fmt::format("is a 2D image ({} x {}); isowave lod needs a volume{}", x, y, remedy));
+                     fmt::format("is a 2D image ({} x {}); expected a volume{}", x, y, remedy));
 }
 
 // What is wrong is said once, in an exception. ITK itself can be told so; the libtiff that it brings along

@@ -69,6 +69,20 @@ bool isGzip(const fs::path& path) {
     return magic[0] == 0x1F && magic[1] == 0x8B;
 }
 
+// ITK takes a sform whose axes are at right angles only. (A qform, always a rotation, would stand in.)
+void checkNiftiAngles(const std::string& file, const std::array<openvdb::Vec3d, 3>& axis) {
+    for (int a = 0; a < 3; ++a) {
+        const int b = (a + 1) % 3;
+        const double cosine = axis[a].dot(axis[b]) / (axis[a].length() * axis[b].length());
+        if (std::abs(cosine) > 0.01)
+            throw InputError(
+                file,
+                fmt::format("its sform puts {:.1f} degrees between the {} and the {} axis; expected right "
+                            "angles; resample it",
+                            std::acos(cosine) * 180 / std::acos(-1.0), "xyz"[a], "xyz"[b]));
+    }
+}
+
 // The NIfTI library inverts what the header says of orientation, and vnl aborts the program over an inf in
 // it.
 void checkNiftiOrientation(const std::string& file, const NiftiBytes& header) {
@@ -117,6 +131,7 @@ void checkNiftiOrientation(const std::string& file, const NiftiBytes& header) {
                         "axes",
                         axis[0][0], axis[0][1], axis[0][2], axis[1][0], axis[1][1], axis[1][2], axis[2][0],
                         axis[2][1], axis[2][2]));
+    if (header.at<std::int16_t>(252) <= 0) checkNiftiAngles(file, axis);
 }
 
 bool isWhole(float value) { return std::isfinite(value) && value == std::floor(value); }

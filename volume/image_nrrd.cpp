@@ -99,6 +99,9 @@ std::optional<PlainData> checkNrrdData(const fs::path& path, const NrrdText& tex
         return found == text.field.end() ? std::string() : found->second;
     };
     const std::string data = get("datafile"), encoding = lower(get("encoding"));
+    if (encoding == "bzip2" || encoding == "bz2")  // NrrdIO as ITK has it lacks it
+        throw InputError(name,
+                         "'encoding' says " + encoding + "; expected raw, gzip, ascii or hex; convert it");
     for (const std::string& file : text.dataFiles) requireFile(path, path.parent_path() / file);
     // "pattern%03d.raw 1 9 1" and lists: several files, whose lengths NrrdIO checks one by one.
     if (!text.dataFiles.empty() || data.find('%') != std::string::npos) return std::nullopt;

@@ -581,8 +581,9 @@ openvdb::FloatGrid::Ptr pickOnly(const std::string& file, const openvdb::GridPtr
         }
     if (grids.empty()) throw InputError(file, "holds no grids; expected a level set");
     if (found.empty())
-        throw InputError(file, fmt::format("holds no level set but {}; name the grid to use one all the same",
-                                           describe(grids)));
+        throw InputError(file,
+                         fmt::format("holds no level set, only {}; name the grid to use one all the same",
+                                     describe(grids)));
     if (found.size() > 1)
         throw InputError(
             file, fmt::format("holds {} level sets: {}; name the one to use", found.size(), describe(found)));

@@ -16,6 +16,14 @@ Json check(const fs::path& file, int exitCode) {
     return result.json();
 }
 
+TEST(Check, SpeaksOfOneTriangleInTheSingular) {
+    const Folder folder;
+    writeOff(folder / "a.off", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    const std::string text = isowave({"check", (folder / "a.off").string()}).out;
+    EXPECT_NE(text.find(": 1 triangle, 3 vertices\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(" 1 component,"), std::string::npos) << text;
+}
+
 TEST(Check, FindsNothingWrongWithATorus) {
     const Folder folder;
     writeStl(folder / "a.stl", torus(20, 8));

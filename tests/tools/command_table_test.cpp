@@ -10,7 +10,7 @@ const std::vector<std::string> kCommands{"lod",   "analyse", "mesh", "field",   
 TEST(Help, ListsEverySubcommandAndEveryExitCode) {
     const std::string text = succeed({"--help"}).out;
     for (const std::string& command : kCommands)
-        EXPECT_NE(text.find("\n  " + command), std::string::npos) << command;
+        EXPECT_NE(text.find("\n  " + command + "  "), std::string::npos) << command;
     for (const char* code : {"  0  ", "  1  ", "  2  ", "  3  ", "  4  ", "130  "})
         EXPECT_NE(text.find(code), std::string::npos) << code;
     EXPECT_EQ(text, succeed({"help"}).out);
@@ -91,6 +91,12 @@ TEST(Parser, RefusesAnOptionGivenTwice) {
     const Result result = isowave({"lod", "no.nrrd", "--iso", "1", "--iso", "2", "-o", "x"});
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_EQ(result.errorLines(), 1);
+}
+
+TEST(Parser, SaysWhichOptionLacksItsValue) {
+    const Result result = isowave({"lod", "no.nrrd", "--iso", "-o", "x"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.err.find("--iso: '-o' is not a number"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -75,8 +75,7 @@ TEST_F(BadImage, GarbageUnderAGoodName) {
 TEST_F(BadImage, Flat) {
     for (const std::string name : {"a.png", "a.tif", "a.nrrd", "a.mha", "a.nii"}) {
         test::writeItk(test::patternImage<unsigned char, 2>({7, 5}).GetPointer(), folder / name);
-        EXPECT_THAT(refusal(folder / name), HasSubstr("is a 2D image (7 x 5); isowave lod needs a volume"))
-            << name;
+        EXPECT_THAT(refusal(folder / name), HasSubstr("is a 2D image (7 x 5); expected a volume")) << name;
     }
 }
 
@@ -158,6 +157,22 @@ TEST_F(BadImage, AxesThatSpanNoSpace) {
     EXPECT_THAT(refusal(nifti<float>(280, std::numeric_limits<float>::infinity())),
                 HasSubstr("expected a finite number"));
     EXPECT_THAT(refusal(nifti<float>(280, 0.0f)), HasSubstr("which cannot be inverted"));  // sform
+}
+
+// Without a qform ITK refuses it, in words that speak of no file.
+TEST_F(BadImage, ObliqueAxes) {
+    const fs::path path = nifti<float>(284, -0.5f);  // sform: x runs along (-1, 0, 0), y along (-0.5, -1, 0)
+    std::string bytes = test::bytesOf(path);
+    bytes[252] = bytes[253] = 0;  // qform_code
+    EXPECT_THAT(refusal(put(path, bytes)),
+                HasSubstr("its sform puts 63.4 degrees between the x and the y axis"));
+}
+
+TEST_F(BadImage, EncodingThatIsNotRead) {
+    EXPECT_THAT(refusal(put(folder / "a.nrrd",
+                            "NRRD0005\ntype: uint8\ndimension: 3\nsizes: 4 3 2\n"
+                            "encoding: bzip2\n\nBZh9")),
+                HasSubstr("'encoding' says bzip2; expected raw, gzip, ascii or hex"));
 }
 
 TEST_F(BadImage, SizesThatCannotBe) {
@@ -332,7 +347,6 @@ TEST_F(Truncation, OfAPngSlice) {
 }
 
 // ----------------------------------------------------------------------------------------- corruptions
-
 
 }  // namespace
 }  // namespace isowave

@@ -363,7 +363,7 @@ TEST_F(LevelSet, IsRefusedWhereSeveralOrNone) {
         refusalOf({sphere(), second}),
         HasSubstr("holds 2 level sets: 'sphere' (float, level set), 'other' (float, level set); name"));
     EXPECT_EQ(refusalOf({sphere(), second}, "other"), "");
-    EXPECT_THAT(refusalOf({fog()}), HasSubstr("holds no level set but 'smoke' (float, fog volume)"));
+    EXPECT_THAT(refusalOf({fog()}), HasSubstr("holds no level set, only 'smoke' (float, fog volume)"));
     EXPECT_EQ(refusalOf({fog()}, "smoke"), "");
     EXPECT_THAT(refusalOf({fog()}, "dust"), HasSubstr("has no grid 'dust'; it holds 'smoke'"));
     EXPECT_THAT(refusalOf({}), HasSubstr("holds no grids"));
