@@ -7,23 +7,12 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/links.h"
 
 namespace isowave {
-namespace {
 
-constexpr int kMostLinks = 40;  // in a row, as Linux follows them
-
-}  // namespace
-
-AtomicFile::AtomicFile(std::filesystem::path place) : place_(std::move(place)) {
+AtomicFile::AtomicFile(std::filesystem::path place) : place_(behindLinks(place)) {
     std::error_code error;
-    // Through links, also to what is not there yet: replacing the link itself would leave its target as it was.
-    const std::filesystem::path named = place_;
-    for (int links = 0; std::filesystem::is_symlink(place_, error); ++links) {
-        if (links == kMostLinks) throw OperationError(named.string(), "is a link that leads to itself");
-        // An absolute target takes the place of the folder, too.
-        place_ = place_.parent_path() / std::filesystem::read_symlink(place_, error);
-    }
     const auto status = std::filesystem::status(place_, error);
     if (std::filesystem::is_directory(status))
         throw OperationError(place_.string(), "is a folder; give the name of a file to write");

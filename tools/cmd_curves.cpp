@@ -222,6 +222,8 @@ int runCurves(const Settings& settings, Console& console) {
     refuseForeignOptions(settings);
     OutputFolder out(*settings.output, Inputs(settings.files));
     const bool toStdout = settings.jsonFile == "-";
+    if (settings.jsonFile && !toStdout) out.keepFree(*settings.jsonFile);
+    if (settings.sheet) out.keepFree(*settings.sheet);
     std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
     if (settings.jsonFile && !toStdout) copy.emplace(*settings.jsonFile);
     std::optional<tbb::global_control> limit;

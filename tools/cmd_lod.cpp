@@ -78,6 +78,8 @@ class Wanted {
 // From level 0 to a coarser level, which is far from most of it, the nearest triangle takes long to find: so
 // many triangles of level 0, evenly chosen, are enough for an rms to three digits and see every speck of a
 // few hundredths of a percent of the surface. In the other direction every vertex and centroid counts.
+constexpr const char* kReport = "report.json";
+
 constexpr std::size_t kReferenceTriangles = 50'000;
 
 // Every k-th triangle, each with points of its own when k > 1.
@@ -289,10 +291,12 @@ int runLod(const Settings& settings, Console& console) {
     const MeshFormat format = settings.format.value_or(MeshFormat::ply);
     Budgets budgets(settings, out.name(), format);
     const Wanted wanted(settings, out.name(), format, budgets.wanted());
-    for (const std::string& file : wanted.fileNames()) out.refuseInput(file);
-    for (const std::string& file : budgets.fileNames()) out.refuseInput(file);
-    const std::string name = settings.files[0].string();
     const bool toStdout = settings.jsonFile == "-";
+    if (settings.jsonFile && !toStdout) out.keepFree(*settings.jsonFile);
+    out.refuseTaken(kReport);
+    for (const std::string& file : wanted.fileNames()) out.refuseTaken(file);
+    for (const std::string& file : budgets.fileNames()) out.refuseTaken(file);
+    const std::string name = settings.files[0].string();
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
     if (settings.jsonFile && !toStdout) copy.emplace(*settings.jsonFile);
     try {
@@ -317,7 +321,7 @@ int runLod(const Settings& settings, Console& console) {
         report["threads"] = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 
         // What can fail for want of room comes first; then only names change.
-        AtomicFile file(out.place("report.json"));
+        AtomicFile file(out.place(kReport));
         writeJson(file, report);
         file.commit();
         if (copy) writeJson(*copy, report);

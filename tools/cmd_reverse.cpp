@@ -46,9 +46,10 @@ int runReverse(const Settings& settings, Console& console) {
         throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme.name) +
                          " has no creases");
     polygonFormatOf(*settings.output);  // a wrong name is found before the work
-    if (settings.details) Inputs(settings.files).refuse(*settings.details);
-    if (settings.details && *settings.details == *settings.output)
-        throw UsageError("--details: is the name of the output; choose another one");
+    if (settings.details) {
+        Inputs(settings.files).refuse(*settings.details);
+        refuseSamePlace(*settings.output, *settings.details);
+    }
     const Progress progress = console.progress();
     const PolygonMesh mesh = readPolygonMesh(input);
     const Hierarchy hierarchy = [&] {

@@ -15,7 +15,6 @@
 #include "tools/console.h"
 #include "tools/help.h"
 #include "tools/output.h"
-#include "volume/image.h"
 
 namespace {
 
@@ -23,13 +22,20 @@ namespace tools = isowave::tools;
 
 // Before anything is opened: a result never takes the place of what it is made from.
 void refuseToReplaceInputs(const tools::Settings& settings) {
-    std::vector<std::filesystem::path> read = settings.files;
-    for (const auto& file : settings.files)
-        for (const auto& voxels : isowave::voxelFilesOf(file)) read.push_back(voxels);
-    const tools::Inputs inputs(std::move(read));
+    const tools::Inputs inputs(settings.files);
     for (const auto& place : {settings.output, settings.sheet, settings.svg})
         if (place) inputs.refuse(*place);
     if (settings.jsonFile) inputs.refuse(*settings.jsonFile);
+}
+
+// One of them would silently take the place of the other.
+void refuseOnePlaceForTwoResults(const tools::Settings& settings) {
+    std::vector<std::filesystem::path> places;
+    for (const auto& place : {settings.output, settings.sheet, settings.svg})
+        if (place) places.push_back(*place);
+    if (settings.jsonFile && *settings.jsonFile != "-") places.emplace_back(*settings.jsonFile);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) tools::refuseSamePlace(places[j], places[i]);
 }
 
 int run(int argc, char** argv) {
@@ -45,6 +51,7 @@ int run(int argc, char** argv) {
         return 0;
     }
     refuseToReplaceInputs(settings);
+    refuseOnePlaceForTwoResults(settings);
     std::optional<tbb::global_control> threads;
     if (settings.threads > 0)
         threads.emplace(tbb::global_control::max_allowed_parallelism,

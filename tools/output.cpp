@@ -1,12 +1,15 @@
 #include "tools/output.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/links.h"
 #include "tools/settings.h"
+#include "volume/image.h"
 
 namespace isowave::tools {
 namespace fs = std::filesystem;
@@ -26,6 +29,12 @@ void refuseFolder(const fs::path& place) {
 
 }  // namespace
 
+Inputs::Inputs(std::vector<fs::path> paths) : paths_(std::move(paths)) {
+    const std::size_t named = paths_.size();
+    for (std::size_t i = 0; i < named; ++i)
+        for (fs::path& voxels : voxelFilesOf(paths_[i])) paths_.push_back(std::move(voxels));
+}
+
 bool Inputs::contain(const fs::path& place) const {
     std::error_code ignored;
     for (const fs::path& input : paths_) {
@@ -43,6 +52,16 @@ void Inputs::refuse(const fs::path& place) const {
     // A folder of slices may get results beside the slices.
     if (!fs::exists(place, ignored) || fs::is_directory(place, ignored) || !contain(place)) return;
     throw UsageError(place.string() + " is what this command reads; choose another name for the result");
+}
+
+void refuseSamePlace(const fs::path& a, const fs::path& b) {
+    std::error_code ignored;
+    const auto found = [&](const fs::path& place) {
+        return fs::weakly_canonical(behindLinks(tidy(place)), ignored);
+    };
+    if (fs::is_other(a, ignored) || found(a) != found(b)) return;
+    throw UsageError(
+        fmt::format("{} would get two results; choose another name for one of them", b.string()));
 }
 
 MadeFolders::MadeFolders(const fs::path& folder) {
@@ -88,13 +107,23 @@ OutputFolder::OutputFolder(const fs::path& folder, Inputs inputs)
     hidden_ = hidden;
 }
 
+void OutputFolder::keepFree(const fs::path& place) {
+    refuseSamePlace(folder_, place);
+    keptFree_.push_back(place);
+}
+
+void OutputFolder::refuseTaken(const std::string& name) const {
+    inputs_.refuse(folder_ / name);
+    for (const fs::path& place : keptFree_) refuseSamePlace(folder_ / name, place);
+}
+
 OutputFolder::~OutputFolder() {
     std::error_code ignored;
     if (!hidden_.empty()) fs::remove_all(hidden_, ignored);
 }
 
 fs::path OutputFolder::place(const std::string& name) {
-    refuseInput(name);
+    refuseTaken(name);
     refuseFolder(folder_ / name);
     names_.push_back(name);
     return hidden_ / name;

@@ -28,8 +28,8 @@ class MadeFolders {
 // What a job reads, so that nothing that it writes takes the place of it.
 class Inputs {
   public:
-    // Files, and folders of slices: every file below those is an input.
-    explicit Inputs(std::vector<std::filesystem::path> paths = {}) : paths_(std::move(paths)) {}
+    // Files, and folders of slices: every file below those is an input. So are the voxels beside a header.
+    explicit Inputs(std::vector<std::filesystem::path> paths = {});
     // Throws UsageError when `place` is one of them, by whatever name: symbolic and hard links count.
     void refuse(const std::filesystem::path& place) const;
 
@@ -38,6 +38,9 @@ class Inputs {
 
     std::vector<std::filesystem::path> paths_;
 };
+
+// Throws UsageError when two results of a command would be one file, by whatever names. Devices may be named twice.
+void refuseSamePlace(const std::filesystem::path& a, const std::filesystem::path& b);
 
 // A folder that gets all files of a job at once. They are written into a hidden folder, on the same disk,
 // and renamed at the end.
@@ -52,10 +55,12 @@ class OutputFolder {
     const std::filesystem::path& folder() const { return folder_; }
     // The last component of the folder's name, which its files start with.
     std::string name() const { return folder_.filename().string(); }
-    // Throws UsageError when folder()/name is an input.
-    void refuseInput(const std::string& name) const { inputs_.refuse(folder_ / name); }
+    // `place` gets a result that is written apart from those of the folder. Throws UsageError when it is the folder.
+    void keepFree(const std::filesystem::path& place);
+    // Throws UsageError when folder()/name is an input, or a place that was to be kept free.
+    void refuseTaken(const std::string& name) const;
     // Where to write the file that will be folder()/name. Throws OperationError when a folder has that name,
-    // UsageError when an input has it.
+    // UsageError when it is taken.
     std::filesystem::path place(const std::string& name);
     // Puts all files into the folder, in place of those of the same names; other files there stay. Throws
     // OperationError, and the folder is as it was.
@@ -68,6 +73,7 @@ class OutputFolder {
 
     std::filesystem::path folder_;
     Inputs inputs_;
+    std::vector<std::filesystem::path> keptFree_;
     MadeFolders parents_;
     std::filesystem::path hidden_;
     std::vector<std::string> names_;

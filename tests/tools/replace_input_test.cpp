@@ -92,5 +92,28 @@ TEST(ReplacingTheInput, IsRefusedForTheVoxelsBesideAHeader) {
             expectRefusal(folder, {"analyse", header, "--iso", "0", "-o", (folder / place).string()});
 }
 
+TEST(OnePlace, IsNotForTwoResults) {
+    const Folder folder;
+    writeNrrd(folder / "a.nrrd", {16, 16, 16}, greyBall({16, 16, 16}, 5));
+    fs::create_directories(folder / "there");
+    fs::create_symlink("there/there_L0.ply", folder / "link.json");
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    const auto lod = [&](const char* out, const char* json) {
+        return Arguments{"lod", path("a.nrrd"), "--iso", "0", "-o", path(out), "--json", path(json)};
+    };
+    const auto before = folder.snapshot();
+    for (const Arguments& arguments :
+         {lod("out", "out"), lod("out", "there/../out"), lod("there", "there/there_L0.ply"),
+          lod("there", "there/report.json"), lod("there", "link.json"),
+          Arguments{"curves", path("a.nrrd"), "-o", path("out"), "--sheet", path("x"), "--json", path("x")},
+          Arguments{"reverse", path("a.obj"), "-o", path("b.obj"), "--details", path("there/../b.obj")}}) {
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, 2) << arguments.back() << ": " << result.err;
+        EXPECT_NE(result.err.find("would get two results"), std::string::npos) << result.err;
+        EXPECT_EQ(folder.snapshot(), before) << arguments.back();
+    }
+    succeed({"lod", path("a.nrrd"), "--iso", "0", "-o", path("there"), "--json", path("there/other.json")});
+}
+
 }  // namespace
 }  // namespace isowave::tools_test
