@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <unordered_map>
+#include <numeric>
 #include <vector>
 
 #include "base/error.h"
@@ -41,9 +42,10 @@ using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
 // The lattice points that are corners of a kept node: voxel i is one when a node of i - {0,1}^3 is kept.
 Mask cornersOf(const Mask& nodes) {
     Mask corners;
+    openvdb::tree::ValueAccessor<Mask> toTouch(corners);
     for (auto leaf = nodes.cbeginLeaf(); leaf; ++leaf)
         for (int b = 0; b < 8; ++b)
-            corners.touchLeaf(leaf->origin().offsetBy(8 * (b >> 2), 8 * ((b >> 1) & 1), 8 * (b & 1)));
+            toTouch.touchLeaf(leaf->origin().offsetBy(8 * (b >> 2), 8 * ((b >> 1) & 1), 8 * (b & 1)));
     openvdb::tree::LeafManager<Mask> leaves(corners);
     leaves.foreach ([&nodes](MaskLeaf& leaf, std::size_t) {
         ConstAccessor<Mask> accessor(nodes);
@@ -204,84 +206,115 @@ void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const
 // ---- repair ---------------------------------------------------------------------------------------------
 
 // While a lattice point of I has s F < floor: its control point c <- c + target s - F. A change by delta
-// moves F there by (2/3)^3 delta. Leaves whose neighbourhood did not change in the last pass are skipped.
+// moves F there by (2/3)^3 delta. A pass looks at the leaves whose neighbourhood the last one changed, and changes
+// them all at once: few after the first, so that what it costs is the first.
 class Repair {
   public:
     // floor, target: fractions of K.
     Repair(BSplineField& field, double floor, double target)
         : field_(field),
-          leaves_(field.controlPoints->tree(), 1),
+          leaves_(field.controlPoints->tree()),
           floor_(floor * field.K),
-          target_(target * field.K) {
-        for (std::size_t i = 0; i < leaves_.leafCount(); ++i) indexOf_[leaves_.leaf(i).origin()] = i;
-    }
+          target_(target * field.K) {}
 
     void run(int mostPasses, FitReport& report, const Progress& progress) {
-        std::vector<char> active(leaves_.leafCount(), 1);
+        std::vector<openvdb::Index32> active(leaves_.leafCount());
+        std::iota(active.begin(), active.end(), 0);
+        leaves_.foreach ([](FloatLeaf& leaf, std::size_t i) {
+            leaf.setTransientData(static_cast<openvdb::Index32>(i));  // for neighboursOf()
+        });
         report.repairFloor = floor_ / field_.K;
         report.repairAgreed = false;
         while (report.repairPasses < mostPasses) {
             progress.check();
-            std::vector<char> changed(leaves_.leafCount(), 0);
-            const std::int64_t count = onePass(active, changed);
+            const Changes changes = wanted(active);
+            std::int64_t count = 0;
+            for (const auto& [leaf, values] : changes) count += static_cast<std::int64_t>(values.size());
             report.repairAgreed = count == 0;
             if (report.repairAgreed) return;
+            apply(changes);
             report.repaired += count;
             ++report.repairPasses;
-            active = neighboursOf(changed);
+            active = neighboursOf(changes);
         }
     }
 
   private:
-    std::int64_t onePass(const std::vector<char>& active, std::vector<char>& changed) {
-        std::atomic<std::int64_t> count{0};
-        const openvdb::FloatTree& tree = field_.controlPoints->constTree();
-        const openvdb::BoolTree& shape = field_.shape->constTree();
-        leaves_.foreach ([&](FloatLeaf& leaf, std::size_t i) {
-            auto& out = leaves_.getBuffer(i, 1);
-            out = leaf.buffer();
-            if (!active[i]) return;
-            ConstAccessor<openvdb::FloatTree> accessor(tree);
-            PaddedLeaf<double, 1, 1> c;
-            c.gather(accessor, leaf.origin());
-            std::array<double, 512> F;
-            filterThreeTaps(c, 4.0 / 6, 1.0 / 6, F);
-            const BoolLeaf* inside = shape.probeConstLeaf(leaf.origin());
-            std::int64_t here = 0;
-            for (auto known = leaf.cbeginValueOn(); known; ++known) {
-                const double s = inside->getValue(known.pos()) ? -1 : 1;
-                if (s * F[known.pos()] >= floor_) continue;
-                out.setValue(known.pos(), static_cast<float>(*known + target_ * s - F[known.pos()]));
-                ++here;
-            }
-            changed[i] = here > 0;
-            count += here;
-        });
-        leaves_.swapLeafBuffer(1);
-        return count;
+    struct Change {
+        openvdb::Index offset;
+        float value;
+    };
+    struct LeafChanges {
+        openvdb::Index32 leaf;
+        std::vector<Change> values;
+    };
+    using Changes = std::vector<LeafChanges>;  // by leaf, without empty ones
+
+    // Where values in a leaf's order lie on the wrong side of the floor for the sign that the shape asks for.
+    LeafWords tooSmall(const std::array<double, 512>& F, const LeafWords& inside) const {
+        LeafWords words{};
+        for (int x = 0; x < 8; ++x) {
+            std::uint64_t below = 0, above = 0;
+            for (int i = 0; i < 64; ++i) below |= std::uint64_t(F[64 * x + i] < floor_) << i;
+            for (int i = 0; i < 64; ++i) above |= std::uint64_t(-F[64 * x + i] < floor_) << i;
+            words[x] = (inside[x] & above) | (~inside[x] & below);
+        }
+        return words;
     }
 
-    std::vector<char> neighboursOf(const std::vector<char>& changed) const {
-        std::vector<char> near(changed.size(), 0);
-        for (std::size_t i = 0; i < changed.size(); ++i) {
-            if (!changed[i]) continue;
-            const openvdb::Coord origin = leaves_.leaf(i).origin();
-            for (int b = 0; b < 27; ++b) {
-                const auto at =
-                    indexOf_.find(origin.offsetBy(8 * (b / 9 - 1), 8 * (b / 3 % 3 - 1), 8 * (b % 3 - 1)));
-                if (at != indexOf_.end()) near[at->second] = 1;
+    std::vector<Change> wantedIn(const FloatLeaf& leaf) const {
+        ConstAccessor<openvdb::FloatTree> accessor(field_.controlPoints->constTree());
+        PaddedLeaf<double, 1, 1> c;
+        c.gather(accessor, leaf.origin());
+        std::array<double, 512> F;
+        filterThreeTaps(c, 4.0 / 6, 1.0 / 6, F);
+        const LeafWords inside = insideWordsOf(*field_.shape->constTree().probeConstLeaf(leaf.origin()));
+        const LeafWords known = wordsOf(leaf.getValueMask()), small = tooSmall(F, inside);
+        std::vector<Change> changes;
+        for (int x = 0; x < 8; ++x)
+            for (std::uint64_t bits = known[x] & small[x]; bits; bits &= bits - 1) {
+                const int i = std::countr_zero(bits), offset = 64 * x + i;
+                const double s = inside[x] >> i & 1 ? -1 : 1;
+                const auto at = static_cast<openvdb::Index>(offset);
+                changes.push_back({at, static_cast<float>(leaf.getValue(at) + target_ * s - F[offset])});
             }
+        return changes;
+    }
+
+    Changes wanted(const std::vector<openvdb::Index32>& active) const {
+        Changes all(active.size());
+        tbb::parallel_for(std::size_t(0), active.size(), [&](std::size_t i) {
+            all[i] = {active[i], wantedIn(leaves_.leaf(active[i]))};
+        });
+        std::erase_if(all, [](const LeafChanges& leaf) { return leaf.values.empty(); });
+        return all;
+    }
+
+    void apply(const Changes& changes) {
+        tbb::parallel_for(std::size_t(0), changes.size(), [&](std::size_t i) {
+            FloatLeaf& leaf = leaves_.leaf(changes[i].leaf);
+            for (const auto [offset, value] : changes[i].values) leaf.setValueOnly(offset, value);
+        });
+    }
+
+    // The leaves that changed and those beside them, in order.
+    std::vector<openvdb::Index32> neighboursOf(const Changes& changes) const {
+        ConstAccessor<openvdb::FloatTree> accessor(field_.controlPoints->constTree());
+        std::vector<openvdb::Index32> near;
+        for (const auto& change : changes) {
+            const openvdb::Coord origin = leaves_.leaf(change.leaf).origin();
+            for (int b = 0; b < 27; ++b)
+                if (const auto* leaf = accessor.probeConstLeaf(
+                        origin.offsetBy(8 * (b / 9 - 1), 8 * (b / 3 % 3 - 1), 8 * (b % 3 - 1))))
+                    near.push_back(leaf->transientData());
         }
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
         return near;
     }
 
-    struct CoordHash {
-        std::size_t operator()(const openvdb::Coord& c) const { return c.hash<20>(); }
-    };
-
     BSplineField& field_;
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves_;
-    std::unordered_map<openvdb::Coord, std::size_t, CoordHash> indexOf_;
     double floor_, target_;
 };
 
@@ -296,14 +329,18 @@ void countDisagreement(const BSplineField& field, FitReport& report) {
     openvdb::tree::LeafManager<Mask> leaves(reach);
     leaves.foreach ([&](MaskLeaf& leaf, std::size_t) {
         ConstAccessor<openvdb::FloatTree> accessor(field.controlPoints->constTree());
-        ConstAccessor<openvdb::BoolTree> signs(field.shape->constTree());
+        const Signs signs(field.shape->constTree(), openvdb::Coord(0));
         PaddedLeaf<double, 1, 1> c;
         c.gather(accessor, leaf.origin());
         std::array<double, 512> F;
         filterThreeTaps(c, 4.0 / 6, 1.0 / 6, F);
+        const LeafWords inside = signs.leaf(leaf.origin()), reached = wordsOf(leaf.getValueMask()),
+                        negative = negativeWordsOf(F.data());
         std::int64_t here = 0, wrong = 0;
-        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel, ++here)
-            wrong += signs.getValue(voxel.getCoord()) != (F[voxel.pos()] < 0);
+        for (int x = 0; x < 8; ++x) {
+            here += std::popcount(reached[x]);
+            wrong += std::popcount(reached[x] & (inside[x] ^ negative[x]));
+        }
         points += here;
         disagreeing += wrong;
     });
@@ -332,9 +369,10 @@ FitReport finish(BSplineField& field, double floor, double target, int mostPasse
 // Nodes with a corner nearer than `band`, and nodes whose corner signs differ.
 Mask nodesNear(const openvdb::FloatTree& distance, float band) {
     Mask nodes;
+    openvdb::tree::ValueAccessor<Mask> toTouch(nodes);
     for (auto leaf = distance.cbeginLeaf(); leaf; ++leaf)
         for (int b = 0; b < 8; ++b)
-            nodes.touchLeaf(leaf->origin().offsetBy(-8 * (b >> 2), -8 * ((b >> 1) & 1), -8 * (b & 1)));
+            toTouch.touchLeaf(leaf->origin().offsetBy(-8 * (b >> 2), -8 * ((b >> 1) & 1), -8 * (b & 1)));
     openvdb::tree::LeafManager<Mask> leaves(nodes);
     leaves.foreach ([&distance, band](MaskLeaf& leaf, std::size_t) {
         ConstAccessor<openvdb::FloatTree> accessor(distance);

@@ -35,7 +35,8 @@ inline void setInside(openvdb::BoolTree::LeafNodeType& leaf, const LeafWords& wo
 }
 
 // Where 512 values in a leaf's order are negative.
-inline LeafWords negativeWordsOf(const float* values) {
+template <class Value>
+LeafWords negativeWordsOf(const Value* values) {
     LeafWords words{};
     for (std::uint64_t& word : words)
         for (int i = 0; i < 64; ++i) word |= std::uint64_t(*values++ < 0) << i;

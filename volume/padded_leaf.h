@@ -21,11 +21,11 @@ struct PaddedLeaf {
     }
     Value at(int x, int y, int z) const { return values[index(x, y, z)]; }
 
-    // Copies from the leaves and tiles around `origin` (of a leaf). readRow(leaf, offset, count, out) copies a leaf's
-    // values at offset .. offset + count - 1; the accessor gives that of a place without leaf, which is the same all
-    // over it.
-    template <class Accessor, class ReadRow>
-    void gatherRows(const Accessor& accessor, const openvdb::Coord& origin, const ReadRow& readRow) {
+    // Copies from the leaves and tiles around `origin` (of a leaf). open(leaf) returns what reads that leaf's rows: called
+    // with (offset, count, out) it copies the values at offset .. offset + count - 1. The accessor gives the value of a
+    // place without leaf, which is the same all over it.
+    template <class Accessor, class Open>
+    void gatherRows(const Accessor& accessor, const openvdb::Coord& origin, const Open& open) {
         using Leaf = typename Accessor::TreeType::LeafNodeType;
         constexpr int kFrom = Low > 0 ? -1 : 0, kTo = High > 0 ? 1 : 0;
         const auto low = [](int b) { return std::max(-Low, 8 * b); };
@@ -34,39 +34,43 @@ struct PaddedLeaf {
             for (int by = kFrom; by <= kTo; ++by)
                 for (int bz = kFrom; bz <= kTo; ++bz) {
                     const openvdb::Coord at = origin.offsetBy(8 * bx, 8 * by, 8 * bz);
-                    const Leaf* leaf = accessor.template probeConstNode<Leaf>(at);
-                    const Value uniform = leaf ? Value() : static_cast<Value>(accessor.getValue(at));
                     const int z = low(bz), count = high(bz) - z + 1;
-                    for (int x = low(bx); x <= high(bx); ++x)
-                        for (int y = low(by); y <= high(by); ++y) {
-                            Value* out = &values[index(x, y, z)];
-                            if (leaf)
-                                readRow(
-                                    *leaf,
-                                    static_cast<openvdb::Index>(((x & 7) << 6) | ((y & 7) << 3) | (z & 7)),
-                                    count, out);
-                            else
-                                std::fill_n(out, count, uniform);
-                        }
+                    const auto eachRow = [&](const auto& fill) {
+                        for (int x = low(bx); x <= high(bx); ++x)
+                            for (int y = low(by); y <= high(by); ++y)
+                                fill(static_cast<openvdb::Index>(((x & 7) << 6) | ((y & 7) << 3) | (z & 7)),
+                                     &values[index(x, y, z)]);
+                    };
+                    if (const Leaf* leaf = accessor.template probeConstNode<Leaf>(at)) {
+                        const auto rows = open(*leaf);
+                        eachRow([&](openvdb::Index offset, Value* out) { rows(offset, count, out); });
+                    } else {
+                        const auto uniform = static_cast<Value>(accessor.getValue(at));
+                        eachRow([&](openvdb::Index, Value* out) { std::fill_n(out, count, uniform); });
+                    }
                 }
     }
     // read(leaf, offset) gives one of a leaf's values.
     template <class Accessor, class Read>
     void gather(const Accessor& accessor, const openvdb::Coord& origin, const Read& read) {
-        gatherRows(accessor, origin, [&read](const auto& leaf, openvdb::Index offset, int count, Value* out) {
-            for (int i = 0; i < count; ++i) out[i] = read(leaf, offset + static_cast<openvdb::Index>(i));
+        gatherRows(accessor, origin, [&read](const auto& leaf) {
+            return [&read, &leaf](openvdb::Index offset, int count, Value* out) {
+                for (int i = 0; i < count; ++i) out[i] = read(leaf, offset + static_cast<openvdb::Index>(i));
+            };
         });
     }
     // The leaves' own values, by rows of their buffers: asking for them one by one costs four times as much.
     // REQUIRES: leaves of numbers (a leaf of bool has no buffer of bool).
     template <class Accessor>
     void gather(const Accessor& accessor, const openvdb::Coord& origin) {
-        gatherRows(accessor, origin, [](const auto& leaf, openvdb::Index offset, int count, Value* out) {
-            const auto* row = leaf.buffer().data() + offset;
-            if (count == 8)
-                for (int i = 0; i < 8; ++i) out[i] = static_cast<Value>(row[i]);
-            else
-                for (int i = 0; i < count; ++i) out[i] = static_cast<Value>(row[i]);
+        gatherRows(accessor, origin, [](const auto& leaf) {
+            return [data = leaf.buffer().data()](openvdb::Index offset, int count, Value* out) {
+                const auto* row = data + offset;
+                if (count == 8)
+                    for (int i = 0; i < 8; ++i) out[i] = static_cast<Value>(row[i]);
+                else
+                    for (int i = 0; i < count; ++i) out[i] = static_cast<Value>(row[i]);
+            };
         });
     }
 };
