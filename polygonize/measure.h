@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/progress.h"
 #include "volume/triangle_mesh.h"
@@ -76,8 +77,14 @@ class DistanceTarget {
     // An empty `from` gives zeros. The same result, to the bit, for any number of threads.
     OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0, const Progress& progress = {},
                                   double enough = 0) const;
+    // The same samples, without a bound (maxBound is infinite): no piece is kept, none halved once more.
+    OneSidedDistance sampledDistanceFrom(const TriangleMesh& from, double spacing = 0,
+                                         const Progress& progress = {}) const;
 
   private:
+    OneSidedDistance measured(const TriangleMesh& from, double spacing, const Progress& progress,
+                              std::optional<double> boundEnough) const;
+
     struct Tree;
     std::unique_ptr<Tree> tree_;
 };

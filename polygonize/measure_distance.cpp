@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "polygonize/measure.h"
@@ -364,7 +365,19 @@ NearestPoint DistanceTarget::nearest(const Point& p) const {
 
 OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double spacing,
                                               const Progress& progress, double enough) const {
+    return measured(from, spacing, progress, enough);
+}
+
+OneSidedDistance DistanceTarget::sampledDistanceFrom(const TriangleMesh& from, double spacing,
+                                                     const Progress& progress) const {
+    return measured(from, spacing, progress, std::nullopt);
+}
+
+// boundEnough: without it no bound is sought.
+OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spacing, const Progress& progress,
+                                          std::optional<double> boundEnough) const {
     assert(spacing >= 0);
+    const double enough = boundEnough.value_or(0);
     if (from.triangles.empty()) return {};
 
     // A large triangle is cut into millions of samples: a wish to stop is asked for at each, not by the chunk.
@@ -388,6 +401,7 @@ OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double s
     forChunks(from.triangles.size(), progress, "distances of triangles",
               [&](std::size_t first, std::size_t last, std::size_t chunk) {
                   const auto visit = [&](const Piece& piece, const Sample& centroid) {
+                      if (!boundEnough) return;
                       const BoundedPiece bounded = tree_->bounded(piece, centroid);
                       sums[chunk].maxBound = std::max(sums[chunk].maxBound, bounded.bound);
                       uncertain[chunk].add(bounded);
@@ -403,6 +417,13 @@ OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double s
     Sums total;
     for (const Sums& s : sums) total.add(s);
     total.samples += std::count(used.begin(), used.end(), 1);
+    if (!boundEnough)
+        return {total.distance / total.weight,
+                std::sqrt(total.square / total.weight),
+                total.max,
+                std::numeric_limits<double>::infinity(),
+                area,
+                total.samples};
 
     std::vector<BoundedPiece> pieces;
     double restBound = 0;

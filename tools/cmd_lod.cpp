@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/heap.h"
 #include "polygonize/measure.h"
 #include "polygonize/topology.h"
 #include "polygonize/zero_set.h"
@@ -170,11 +171,12 @@ class Ladder {
         OneSidedDistance to, from;
         if (step != 0 && !mesh.triangles.empty()) {
             if (!target_) {
+                releaseFreedMemory();  // leaves were made and dropped until here; now come large arrays
                 sample_ = thinned(reference_, kReferenceTriangles);
                 target_.emplace(std::exchange(reference_, {}));
             }
-            to = target_->distanceFrom(mesh, 0, console_.progress());
-            from = DistanceTarget(mesh).distanceFrom(sample_, 0, console_.progress());
+            to = target_->sampledDistanceFrom(mesh, 0, console_.progress());
+            from = DistanceTarget(mesh).sampledDistanceFrom(sample_, 0, console_.progress());
         }
         const bool known = !mesh.triangles.empty();
         json["rms_to_level0"] = known ? finite(to.rms) : Json(nullptr);

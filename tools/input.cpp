@@ -22,13 +22,12 @@ namespace {
 // Voxels along the longest axis of a mesh when nothing is said.
 constexpr std::int64_t kDefaultVoxels = 256;
 
-// What lod takes at its peak: the field, one mesh of the ladder, level 0 and the search trees; 60 to 90 MB that
-// the program needs anyway come on top.
-// Distance fit, for each lattice point of the distances' band. Seen: 119 to 134 for parts of 3 to 17 million.
-constexpr double kBytesPerBandPoint = 150;
-// Binary fit, for each node. Seen: 743 to 796, as what a torus of 96 and 140 voxels takes more than one of 48
-// and 96.
-constexpr double kBytesPerNode = 750;
+// What lod takes at its peak, beside the 60 MB that the program needs anyway; docs/volume.md has the runs.
+// Distance fit, for each lattice point of the distances' band. Seen: 44 to 74 a control point, of which there are fewer,
+// for TR12J at 400, 256 and 128 voxels.
+constexpr double kBytesPerBandPoint = 80;
+// Binary fit, for each node. Seen: 275 and 312 for bench/make_volume's 512^3 and 256^3.
+constexpr double kBytesPerNode = 320;
 
 constexpr double kDefaultMemoryShare = 0.7;
 

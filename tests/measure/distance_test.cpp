@@ -135,6 +135,22 @@ TEST(Distance, MaxBoundHoldsEverywhereBetweenSamples) {
     }
 }
 
+TEST(Distance, WithoutABoundTakesTheSameSamples) {
+    const DistanceTarget target(soup(80, 4));
+    const TriangleMesh from = soup(80, 3);
+    for (const double spacing : {0.0, 0.05}) {
+        const OneSidedDistance bounded = target.distanceFrom(from, spacing),
+                               sampled = target.sampledDistanceFrom(from, spacing);
+        EXPECT_EQ(sampled.mean, bounded.mean);
+        EXPECT_EQ(sampled.rms, bounded.rms);
+        EXPECT_EQ(sampled.area, bounded.area);
+        EXPECT_LE(sampled.samples, bounded.samples);
+        EXPECT_LE(sampled.max, bounded.max);  // halved pieces show a little more
+        EXPECT_GT(sampled.max, 0.9 * bounded.max);
+        EXPECT_TRUE(std::isinf(sampled.maxBound));
+    }
+}
+
 TEST(Distance, CornersAndCentroidsAloneDoNotBound) {
     // So the test above can fail: a needle that pokes through a triangle between its corners and its
     // centroid.
