@@ -13,43 +13,45 @@ namespace {
 
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 
-// Takes what is smaller than `below` out of the details; returns how far each of them moved.
+// Takes what is smaller than `below` out of the details; returns what was taken out.
 DetailGrid::Ptr takeOut(DetailGrid& details, double below, std::int64_t& count) {
-    const DetailGrid::Ptr moved = details.deepCopy();
+    const DetailGrid::Ptr out = details.deepCopy();
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(details.tree());
     std::atomic<std::int64_t> taken{0};
     leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
-        FloatLeaf& change = *moved->tree().probeLeaf(leaf.origin());
+        FloatLeaf& outLeaf = *out->tree().probeLeaf(leaf.origin());
         std::int64_t here = 0;
         for (auto detail = leaf.beginValueOn(); detail; ++detail) {
-            const float size = std::abs(*detail);
-            const bool out = size < below;
-            change.setValueOnly(detail.pos(), out ? size : 0.0f);
-            if (out) detail.setValue(0.0f);
-            here += out;
+            const bool small = std::abs(*detail) < below;
+            if (small)
+                detail.setValue(0.0f);
+            else
+                outLeaf.setValueOnly(detail.pos(), 0.0f);
+            here += small;
         }
         taken += here;
     });
     count += taken;
-    return moved;
+    return out;
 }
 
-double largest(const openvdb::FloatGrid& bounds) {
+double largest(const openvdb::FloatGrid& grid) {
     double result = 0;
-    for (auto bound = bounds.cbeginValueOn(); bound; ++bound) result = std::max(result, double{*bound});
+    for (auto value = grid.cbeginValueOn(); value; ++value)
+        result = std::max(result, std::abs(double{*value}));
     return result;
 }
 
-// A bound of 0 for every control point of a field.
-BSplineField unmoved(const BSplineField& field) {
-    BSplineField bound;
-    bound.K = 0;
-    bound.shape = field.shape;
-    bound.controlPoints = openvdb::FloatGrid::create(0.0f);
-    bound.controlPoints->setTree(std::make_shared<openvdb::FloatTree>(field.controlPoints->tree(), 0.0f, 0.0f,
+// Zeros for the control points of a field.
+BSplineField zerosLike(const BSplineField& field) {
+    BSplineField zeros;
+    zeros.K = 0;
+    zeros.shape = field.shape;
+    zeros.controlPoints = openvdb::FloatGrid::create(0.0f);
+    zeros.controlPoints->setTree(std::make_shared<openvdb::FloatTree>(field.controlPoints->tree(), 0.0f, 0.0f,
                                                                       openvdb::TopologyCopy()));
-    bound.controlPoints->setTransform(field.transform().copy());
-    return bound;
+    zeros.controlPoints->setTransform(field.transform().copy());
+    return zeros;
 }
 
 }  // namespace
@@ -59,17 +61,22 @@ DroppedDetails dropDetails(Pyramid& pyramid, std::span<const double> below, cons
     // The bounds themselves are stored as float32, rounded once a step; twice an ulp is enough for that.
     constexpr double kRounding = 1 + 2 * double{std::numeric_limits<float>::epsilon()};
     DroppedDetails result;
+    result.moved.resize(below.size() + 1);
     result.bound.resize(below.size() + 1);
-    BSplineField bound = unmoved(pyramid.coarsest);
+    BSplineField bound = zerosLike(pyramid.coarsest), change = bound;
     double rounding = 1;
     for (std::size_t s = below.size(); s-- > 0;) {
         progress("dropping details", double(below.size() - 1 - s) / double(below.size()));
         Step& step = pyramid.steps[s];
         step.details = step.details->deepCopy();  // others may hold on to them
-        const DetailGrid::Ptr moved = takeOut(*step.details, below[s], result.dropped);
-        result.details += static_cast<std::int64_t>(moved->activeVoxelCount());
-        bound = boundDirection(bound, *moved, *step.shape, step.axis, progress);
+        const DetailGrid::Ptr out = takeOut(*step.details, below[s], result.dropped);
+        result.details += static_cast<std::int64_t>(out->activeVoxelCount());
+        // Synthesis is linear but for the accessory values, which are the same with and without: the field moves by the
+        // synthesis of what was taken out, with K = 0.
+        change = synthesiseDirection(change, *out, *step.shape, step.axis, progress);
+        bound = boundDirection(bound, *out, *step.shape, step.axis, progress);
         rounding *= kRounding;
+        result.moved[s] = largest(*change.controlPoints);
         result.bound[s] = rounding * largest(*bound.controlPoints);
     }
     progress("dropping details", 1);

@@ -16,6 +16,7 @@
 // That is worth something for a few steps only: 1.86^18 = 70,000, all 18 directions taken at an end of an interval.
 //   (2) The same, control point by control point: boundDirection() is (1) with every entry of |Mc| and |Md| in its place
 //       and with the details that really moved. bounds_test shows what is seen beside it.
+// What is seen for details that are known needs no bound: synthesis is linear, so the change is the synthesis of theirs.
 // F moves nowhere by more than the control points: B-splines are >= 0 and add up to 1. Its zero set moves by about
 // e_0 over the slope, which a distance fit makes K / half-width a voxel: 0.01 K is 0.04 voxel with the default of 4.
 #pragma once
@@ -32,16 +33,19 @@ namespace isowave::wavelets {
 // Largest ||Mc|| and ||Md|| of all intervals, rounded up.
 inline constexpr double kCoarseGain = 1.8580, kDetailGain = 1.6625;
 
-// coarse: K = 0, control points >= 0: how far those of a field move at most; details: likewise. How far the fine
-// control points move at most, as a field of K = 0.
+// coarse: K = 0, control points: how far those of a field move at most, either way; details: likewise. How far the
+// fine control points move at most, as a field of K = 0. For errors that are known by their size only: rounding,
+// quantisation.
 BSplineField boundDirection(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
                             int axis, const Progress& progress = {});
 
 struct DroppedDetails {
     std::int64_t details = 0;  // of all steps
     std::int64_t dropped = 0;  // of these, how many were too small
-    // bound[s], 0 <= s <= stepCount(): no control point of step s moves by more, nor does its field anywhere. Beyond it
-    // comes the rounding of float32 that any two ways to one field may show, 1e-6 K.
+    // moved[s], 0 <= s <= stepCount(): the largest change of a control point of step s; its field changes nowhere by
+    // more. Up to the rounding of float32 that any two ways to one field may show, 1e-6 K.
+    std::vector<double> moved;
+    // bound[s] >= moved[s]: what (2) above allows other details of the same sizes.
     std::vector<double> bound;
 };
 

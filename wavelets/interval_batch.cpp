@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "wavelets/interval_kernels.h"
 
@@ -104,6 +105,8 @@ void IntervalBatch::synthesise() {
 void IntervalBatch::gain() {
     using Pack = Two<Double2>;
     double *const y = loadCoefficients(), *const out = y + outAt_;  // the map has 0 for the accessory values
+    double* const rows = y + kFirstCoarseRow * kLanes;
+    for (int i = 0; i < (2 * n_ + 5) * kLanes; ++i) rows[i] = std::abs(rows[i]);
     for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
         gainRows<Pack>(n_, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
     storeFine(out);

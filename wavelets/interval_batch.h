@@ -29,8 +29,8 @@ class IntervalBatch {
 
     void analyse();     // fine -> coefficients
     void synthesise();  // coefficients, left() and right() -> fine, but not its rows 0 and 2n+4
-    // How far each coefficient moves at most -> how far each fine control point does: the sum over the absolute values
-    // of the map of synthesise(). Attained, for one control point at a time.
+    // How far each coefficient moves at most, either way -> how far each fine control point does: the sum over the
+    // absolute values of the map of synthesise() and of the coefficients. Attained, for one control point at a time.
     void gain();
 
   private:
