@@ -355,13 +355,17 @@ constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
 // will do: floor and target in voxels.
 constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
 
-FitReport finish(BSplineField& field, double floor, double target, int mostPasses, FitReport report,
-                 const Progress& progress) {
+// result: what is known so far; report: where all of it goes, nullptr if nobody asks for it. Counting takes a quarter of
+// a fit.
+void finish(BSplineField& field, double floor, double target, int mostPasses, FitReport result,
+            FitReport* report, const Progress& progress) {
     progress("fitting", 0.5);
-    Repair(field, floor, target).run(mostPasses, report, progress);
-    countDisagreement(field, report);
+    Repair(field, floor, target).run(mostPasses, result, progress);
+    if (report) {
+        countDisagreement(field, result);
+        *report = result;
+    }
     progress("fitting", 1);
-    return report;
 }
 
 // ---- distances ------------------------------------------------------------------------------------------
@@ -422,8 +426,7 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
             laplacianPass(leaves, field.controlPoints->constTree());
         }
     }
-    result = finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, progress);
-    if (report) *report = result;
+    finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, report, progress);
     return field;
 }
 
@@ -453,9 +456,7 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
             leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
     });
-    FitReport result =
-        finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, progress);
-    if (report) *report = result;
+    finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, report, progress);
     return field;
 }
 
