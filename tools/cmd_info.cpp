@@ -160,12 +160,14 @@ Json storiesOf(const wavelets::Pyramid& pyramid, const Settings& settings, Conso
         const LevelMesh level = mesher.make(step, field);
         if (level.mesh.triangles.empty()) break;
         const SolidCounts now = countsOf(level.topology);
+        if (step == 0) before = now;
         Json story{{"step", step},
                    {"level", step / kStepsPerLevel},
                    {"spacing", triple(field.transform().voxelSize())}};
         putTopology(story, level.topology);
         story.update(level.facts);
-        story["change"] = changeJson(step == 0 ? now : before, now);
+        story["change"] = changeJson(before, now);
+        story["sampling"] = mesher.sampling(step, field, level, before);
         before = now;
         stories.push_back(std::move(story));
     }

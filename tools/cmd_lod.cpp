@@ -126,8 +126,10 @@ class Ladder {
                 level["file"] = write(step, mesh);
             putTopology(level, made.topology);
             level.update(made.facts);
-            level["change"] = changeJson(counts_.value_or(countsOf(made.topology)), countsOf(made.topology));
-            counts_ = countsOf(made.topology);
+            const SolidCounts now = countsOf(made.topology), before = counts_.value_or(now);
+            level["change"] = changeJson(before, now);
+            level["sampling"] = mesher_.sampling(step, field, made, before);
+            counts_ = now;
             measure(level, step, mesh);
             putDeviation(level, field, made.iso, mesh);
             level["seconds"] = clock_.secondsSoFar() - begin;

@@ -37,19 +37,20 @@ int runMesh(const Settings& settings, Console& console) {
     if (step != 0 && mesher.needsLevel0())
         mesher.make(0, solid.field ? *solid.field : solid.pyramid->field(0, console.progress()));
     const BSplineField field = fieldAtStep(std::move(solid), step, name, console, clock);
-    const auto [mesh, topology, iso, facts] = mesher.make(step, field);
+    const auto [mesh, topology, iso, refine, facts] = mesher.make(step, field);
     if (mesh.triangles.empty())
         throw InputError(name,
                          fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
     writeMesh(*settings.output, mesh, format, {.space = space});
     out.commit();
 
-    console.print(fmt::format("{}: step {}, {}, {}, genus {}, volume {}, {}{}\n", settings.output->string(),
+    console.print(fmt::format("{}: step {}, {}, {}, genus {}, volume {}, {}{}{}\n", settings.output->string(),
                               step, counted(topology.triangles, "triangle"),
                               counted(topology.components, "component"), grouped(topology.genus),
                               shortNumber(topology.volume),
                               topology.closed() && topology.manifold() ? "closed" : "NOT closed",
-                              iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K)));
+                              iso == 0 ? "" : fmt::format(", iso {:+.3f} K", iso / field.K),
+                              refine == settings.refine ? "" : fmt::format(", refine {}", refine)));
     if (settings.deviation) {
         const Deviation d = deviationFrom(ZeroSet(field, iso), mesh, console.progress());
         console.print(fmt::format("triangles are at most {} from the zero set, rms {}\n", shortNumber(d.max),

@@ -1,4 +1,5 @@
 // make = choose the iso-value -> polygonize -> remove specks -> relax -> cut off at the border -> count -> tell
+// sampling = polygonize the same field finer -> remove specks -> count
 #include "tools/level_mesh.h"
 
 #include <fmt/format.h>
@@ -9,11 +10,13 @@
 #include "polygonize/clip.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/relax.h"
+#include "tools/steps.h"
 
 namespace isowave::tools {
 namespace {
 
 constexpr double kPreserved = 1e-4;  // of level 0's volume: issue's 0.01 %
+constexpr int kFinestRefine = 4;     // that polygonize() takes
 
 }  // namespace
 
@@ -38,6 +41,10 @@ Json changeJson(const SolidCounts& before, const SolidCounts& now) {
             {"cavities", now.cavities - before.cavities}};
 }
 
+bool isMore(const SolidCounts& now, const SolidCounts& before) {
+    return now.parts > before.parts || now.handles > before.handles || now.cavities > before.cavities;
+}
+
 std::string voxelText(const Json& spacing) {
     const std::string x = fmt::format("{:.4g}", spacing[0].get<double>());
     const std::string y = fmt::format("{:.4g}", spacing[1].get<double>());
@@ -60,6 +67,18 @@ std::string survivalText(const Json& survival, std::string_view what, std::strin
     return phrases.empty() ? std::string() : fmt::format("{} {}", what, fmt::join(phrases, ", "));
 }
 
+// "76 of 76 new handles are the mesh's sampling, --refine 2 has 25", or nothing where there are no new ones.
+std::string samplingText(const Json& level, const char* key, const char* kind, const char* one,
+                         const char* many) {
+    const auto now = level[key].get<std::int64_t>(), added = level["change"][kind].get<std::int64_t>(),
+               finer = level["sampling"][key].get<std::int64_t>();
+    if (added <= 0) return {};
+    return fmt::format("{} of {} the mesh's sampling, --refine {} has {}",
+                       grouped(std::clamp<std::int64_t>(now - finer, 0, added)),
+                       counted(added, fmt::format("new {} is", one), fmt::format("new {} are", many)),
+                       level["sampling"]["refine"].get<int>(), grouped(finer));
+}
+
 void addPhrase(std::string& story, const std::string& phrase) {
     if (!phrase.empty()) story += "; " + phrase;
 }
@@ -79,6 +98,11 @@ std::string storyText(const Json& level, const std::string& unit) {
         story += ": " + changeText({before(now.parts, "parts"), before(now.handles, "handles"),
                                     before(now.cavities, "cavities")},
                                    now);
+    }
+    if (!level["sampling"].is_null()) {
+        addPhrase(story, samplingText(level, "genus", "handles", "handle", "handles"));
+        addPhrase(story, samplingText(level, "parts", "parts", "part", "parts"));
+        addPhrase(story, samplingText(level, "cavities", "cavities", "cavity", "cavities"));
     }
     if (const Json& features = level["features"]; !features.is_null()) {
         addPhrase(story, survivalText(features["handles"], "holes", "closed", "open", unit));
@@ -128,16 +152,16 @@ LevelMesher::LevelMesher(const Settings& settings, const std::optional<Solid::Bo
 
 LevelMesher::~LevelMesher() = default;
 
-TriangleMesh LevelMesher::polygonizeAt(const BSplineField& field, double iso) const {
-    return polygonize(field, {.refine = settings_.refine, .iso = iso}, console_.progress());
+TriangleMesh LevelMesher::polygonizeAt(const BSplineField& field, double iso, int refine) const {
+    return polygonize(field, {.refine = refine, .iso = iso}, console_.progress());
 }
 
 // The volume without the specks that will be removed.
 double LevelMesher::isoPreservingVolume(int step, const BSplineField& field, double smallest) const {
     const StageClock::Scope scope(clock_, "choose iso");
-    const VolumeMatch match =
-        isoOfVolume([&](double iso) { return volumeWithoutSpecks(polygonizeAt(field, iso), smallest); },
-                    level0_->volume, kIsoLimit * field.K);
+    const VolumeMatch match = isoOfVolume(
+        [&](double iso) { return volumeWithoutSpecks(polygonizeAt(field, iso, settings_.refine), smallest); },
+        level0_->volume, kIsoLimit * field.K);
     const double error = match.volume / level0_->volume - 1;
     if (std::abs(error) > kPreserved)
         console_.say(fmt::format("step {}: the volume of level 0 is out of reach: {:+.3g} % at iso {:+.3g} K",
@@ -145,13 +169,12 @@ double LevelMesher::isoPreservingVolume(int step, const BSplineField& field, dou
     return match.iso;
 }
 
-std::vector<double> LevelMesher::thinValues(const BSplineField& field) const {
+std::vector<double> LevelMesher::thinValues(const BSplineField& field, int refine) const {
     const StageClock::Scope scope(clock_, "thin parts");
     const openvdb::Vec3d spacing = field.transform().voxelSize();
-    if (settings_.refine == 1) return level0_->thin->valuesOn(field, spacing, console_.progress());
+    if (refine == 1) return level0_->thin->valuesOn(field, spacing, console_.progress());
     BSplineField fine = field;
-    for (int refined = 1; refined < settings_.refine; refined *= 2)
-        fine = refineField(fine, console_.progress());
+    for (int refined = 1; refined < refine; refined *= 2) fine = refineField(fine, console_.progress());
     return level0_->thin->valuesOn(fine, spacing, console_.progress());
 }
 
@@ -203,7 +226,7 @@ void LevelMesher::putIso(Json& facts, const BSplineField& field, double smallest
     double distance = 0, volumeAt0 = topology.volume;
     const bool known = !openBorder_;
     if (level.iso != 0 && known) {
-        TriangleMesh unmoved = polygonizeAt(field, 0);
+        TriangleMesh unmoved = polygonizeAt(field, 0, level.refine);
         removeSpecks(unmoved, smallest);
         const MeshTopology before = topologyOf(unmoved);
         volumeAt0 = before.volume;
@@ -217,19 +240,56 @@ void LevelMesher::putIso(Json& facts, const BSplineField& field, double smallest
     facts["volume_error"] = known && volume0 > 0 ? finite(topology.volume / volume0 - 1) : Json(nullptr);
 }
 
+// What is smaller goes.
+double LevelMesher::smallestAt(int step, const BSplineField& field) const {
+    return step == 0 || settings_.keepSpecks ? 0 : nodeVolume(field.transform());
+}
+
 LevelMesh LevelMesher::make(int step, const BSplineField& field) {
-    const double smallest = step == 0 || settings_.keepSpecks ? 0 : nodeVolume(field.transform());
+    LevelMesh level = madeAt(settings_.refine, step, field);
+    if (step == 0 || !settings_.protectThin || openBorder_ || settings_.refine == kFinestRefine) return level;
+    LevelMesh finer = madeAt(2 * settings_.refine, step, field);
+    const auto pieces = [](const LevelMesh& l) { return l.topology.components + l.topology.genus; };
+    const bool fewer = !finer.mesh.triangles.empty() && pieces(finer) < pieces(level);
+    return fewer ? std::move(finer) : std::move(level);
+}
+
+Json LevelMesher::sampling(int step, const BSplineField& field, const LevelMesh& level,
+                           const SolidCounts& before) const {
+    SolidCounts finer = countsOf(level.topology);
+    if (step == 0 || openBorder_ || level.refine == kFinestRefine || !isMore(finer, before)) return nullptr;
+    const StageClock::Scope scope(clock_, "sampling");
+    // A lattice point of level 0 and one of this level, refined so often, are equally dense.
+    const int finest = std::min(kFinestRefine, settings_.refine << std::min(2, step / kStepsPerLevel));
+    int refine = level.refine;
+    do {
+        refine *= 2;
+        TriangleMesh mesh = polygonizeAt(field, level.iso, refine);
+        removeSpecks(mesh, smallestAt(step, field));
+        finer = countsOf(topologyOf(mesh));
+    } while (isMore(finer, before) && 2 * refine <= finest);
+    const bool thin = level0_ && level0_->thin;
+    return {{"refine", refine},
+            {"parts", finer.parts},
+            {"genus", finer.handles},
+            {"cavities", finer.cavities},
+            {"thin_kept", thin ? finite(shareInside(thinValues(field, refine), level.iso)) : Json(nullptr)}};
+}
+
+LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
+    const double smallest = smallestAt(step, field);
     const bool compared = step != 0 && level0_ && level0_->volume > 0;
     LevelMesh level;
+    level.refine = refine;
     std::optional<std::vector<double>> thin;
-    if (compared && level0_->thin) thin = thinValues(field);
+    if (compared && level0_->thin) thin = thinValues(field, refine);
     if (compared && settings_.preserveVolume) level.iso = isoPreservingVolume(step, field, smallest);
     if (thin && settings_.protectThin)
         level.iso = isoThatKeeps(*thin, ThinParts::kShare, kIsoLimit * field.K);
     SpeckRemoval removal;
     {
         const StageClock::Scope scope(clock_, "polygonize");
-        level.mesh = polygonizeAt(field, level.iso);
+        level.mesh = polygonizeAt(field, level.iso, refine);
         if (step == 0) rememberLevel0(field, level.mesh);
         removal = removeSpecks(level.mesh, smallest);
         if (settings_.relax > 0)
@@ -239,6 +299,7 @@ LevelMesh LevelMesher::make(int step, const BSplineField& field) {
                 clipToBox(level.mesh, openBorder_->worldToIndex, openBorder_->low, openBorder_->high);
         level.topology = topologyOf(level.mesh);
     }
+    level.facts["refine"] = refine;
     level.facts["parts"] = level.topology.parts;
     level.facts["cavities"] = level.topology.cavities;
     level.facts["specks_removed"] = removal.specks;

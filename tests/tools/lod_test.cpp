@@ -79,7 +79,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                          "volume", "area", "parts", "cavities", "specks_removed",
                                          "speck_volume", "bubbles_removed", "bubble_volume", "iso_shift",
                                          "iso_distance", "volume_at_iso_0", "volume_error", "thin_kept",
-                                         "thin_kept_at_iso_0", "features", "change", "rms_to_level0",
+                                         "thin_kept_at_iso_0", "features", "change", "refine", "sampling", "rms_to_level0",
                                          "max_to_level0", "rms_from_level0", "max_from_level0", "max_deviation",
                                          "rms_deviation", "seconds"}));
     EXPECT_EQ(r["version"], 1);
