@@ -88,16 +88,20 @@ struct ThinningVisitor : Simplification::Edge_collapse_visitor_base<Surface> {
 // ------------------------------------------------------------------------------------------------------- fit
 
 // The sum of weighted squares of distances from planes, as a function of x: x'Ax - 2b'x + c, about `origin`
-// (Garland and Heckbert 1997); c is not needed to find its minimum.
+// (Garland and Heckbert 1997).
 struct Quadric {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    double c = 0;
 
     void addPlane(const Eigen::Vector3d& normal, const Eigen::Vector3d& on, double weight) {
         A += weight * normal * normal.transpose();
         b += weight * normal.dot(on) * normal;
+        c += weight * normal.dot(on) * normal.dot(on);
     }
-    Quadric operator+(const Quadric& o) const { return {A + o.A, b + o.b}; }
+    Quadric operator+(const Quadric& o) const { return {A + o.A, b + o.b, c + o.c}; }
+    // Not below zero, where rounding would take it.
+    double at(const Eigen::Vector3d& x) const { return std::max(0.0, x.dot(A * x) - 2 * b.dot(x) + c); }
 
     // The minimum, held near `middle` in the directions that the planes leave open.
     Eigen::Vector3d minimum(const Eigen::Vector3d& middle) const {
@@ -122,6 +126,7 @@ struct FanTriangle {
 struct Star {
     std::vector<FanTriangle> fan;
     std::vector<std::uint32_t> points;
+    std::vector<std::uint32_t> guess;  // of each point: the triangle of the fan that is probably nearest
 };
 
 double meanEdge(const TriangleMesh& mesh) {
@@ -160,11 +165,17 @@ struct Collapse::State {
     // is another one whenever its star is.
     std::vector<std::uint32_t> stamps;
     std::vector<char> stuck;  // by edge: cannot be collapsed and is not in the queue
-    double accepted = 0;      // the largest cost of a collapse so far
+    double alike2;            // squared: errors up to it are worth the same
+    double accepted;          // squared: the largest error of a collapse so far, or alike2
     std::priority_queue<Candidate> queue;
 
-    State(const TriangleMesh& start, const TriangleMesh& from, const DistanceTarget& target)
-        : surface(surfaceOf(start)), reference(from), original(target), edgeOfOriginal(meanEdge(from)) {}
+    State(const TriangleMesh& start, const TriangleMesh& from, const DistanceTarget& target, double alike)
+        : surface(surfaceOf(start)),
+          reference(from),
+          original(target),
+          edgeOfOriginal(meanEdge(from)),
+          alike2(alike * alike),
+          accepted(alike2) {}
 
     // ---- set up
 
@@ -223,16 +234,17 @@ struct Collapse::State {
     Star starOf(Halfedge h) const {
         Star star;
         const Face left = surface.face(h), right = surface.face(surface.opposite(h));
-        const auto takePoints = [&](Face f) {
+        const auto takePoints = [&](Face f, std::size_t guess) {
             star.points.insert(star.points.end(), pointsOf[f].begin(), pointsOf[f].end());
+            star.guess.resize(star.points.size(), static_cast<std::uint32_t>(guess));
         };
-        takePoints(left);
-        takePoints(right);
+        takePoints(left, 0);
+        takePoints(right, 0);
         for (const Vertex v : {surface.source(h), surface.target(h)})
             for (const Halfedge in : surface.halfedges_around_target(surface.halfedge(v))) {
                 const Face f = surface.face(in);
                 if (f == left || f == right) continue;
-                takePoints(f);
+                takePoints(f, star.fan.size());
                 const Halfedge out = surface.next(in);
                 const Point3 &a = surface.point(v), &b = surface.point(surface.target(out)),
                              &c = surface.point(surface.source(in));
@@ -255,12 +267,15 @@ struct Collapse::State {
     // it is known to be.
     double pointsError2(const Star& star, const Point3& p, double enough) const {
         double largest = 0;
-        for (const std::uint32_t i : star.points) {
-            double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < star.points.size(); ++k) {
+            const Point3& point = points[star.points[k]];
+            const auto squaredTo = [&](const FanTriangle& t) {
+                return (point - nearestOnTriangle<Kernel>(point, p, t.b, t.c)).squared_length();
+            };
+            double nearest = squaredTo(star.fan[star.guess[k]]);
             for (const FanTriangle& t : star.fan) {
-                const Point3 foot = nearestOnTriangle<Kernel>(points[i], p, t.b, t.c);
-                nearest = std::min(nearest, (points[i] - foot).squared_length());
                 if (nearest <= largest) break;  // this point will not raise the maximum
+                nearest = std::min(nearest, squaredTo(t));
             }
             largest = std::max(largest, nearest);
             if (largest >= enough) break;
@@ -272,9 +287,7 @@ struct Collapse::State {
     // least `enough`; infinite where a triangle of the fan faces against the original.
     double samplesError2(const Star& star, const Point3& p, double largest, double enough) const {
         const auto look = [&](const Point3& at) {
-            const NearestPoint found = original.nearest(toPoint(at));
-            largest = std::max(largest, (at - toPoint3(found.at)).squared_length());
-            return found.triangle;
+            largest = std::max(largest, original.squaredBeyond(toPoint(at), largest));
         };
         look(p);
         for (const FanTriangle& t : star.fan) {
@@ -284,7 +297,10 @@ struct Collapse::State {
                     if (largest >= enough) return largest;
                     look(p + (t.b - p) * j / n + (t.c - p) * k / n);
                 }
-            const Vector3 theirs = normalOf(look(CGAL::centroid(p, t.b, t.c)));
+            const Point3 centroid = CGAL::centroid(p, t.b, t.c);
+            const NearestPoint nearest = original.nearest(toPoint(centroid));
+            largest = std::max(largest, (centroid - toPoint3(nearest.at)).squared_length());
+            const Vector3 theirs = normalOf(nearest.triangle);
             const Vector3 ours = CGAL::cross_product(t.b - p, t.c - p);
             // Beyond a right angle by more than the triangles of a sharp edge differ.
             constexpr double kAgainst = -0.25;
@@ -312,6 +328,14 @@ struct Collapse::State {
                                    toPoint3(reference.points[t[2]]) - a);
     }
 
+    // Errors of at most `alike` are worth the same: those are ordered by the quadric q, in [0, alike).
+    double ranked(double error2, double q) const {
+        if (error2 > alike2 || alike2 == 0) return error2;  // 0/0 is no order
+        const double scale =
+            alike2 * edgeOfOriginal * edgeOfOriginal;  // of q: a squared length times an area
+        return alike2 * (q / (q + scale));
+    }
+
     // Where to put p, and what it costs; nothing when the edge must stay.
     std::optional<Candidate> evaluate(Halfedge h, Look look) const {
         if (!keepsTopology(h)) return {};
@@ -331,6 +355,7 @@ struct Collapse::State {
             if (error <= accepted) break;  // no better place would keep the surfaces closer than they are
         }
         if (!std::isfinite(best.cost)) return {};
+        best.cost = ranked(best.cost, (quadrics[v0] + quadrics[v1]).at(relative(best.at)));
         // Among surfaces that are equally near, short edges go first: the triangles stay even.
         constexpr double kEvenness = 1e-7;
         best.cost += kEvenness * (p1 - p0).squared_length();
@@ -443,11 +468,11 @@ TriangleMesh thin(const TriangleMesh& mesh, std::int64_t triangles, const Progre
 }
 
 Collapse::Collapse(const TriangleMesh& start, const TriangleMesh& surface, const DistanceTarget& original,
-                   double reach, const Progress& progress)
-    : state_(std::make_unique<State>(start, surface, original)) {
+                   const Options& options, const Progress& progress)
+    : state_(std::make_unique<State>(start, surface, original, options.alike)) {
     State& s = *state_;
     if (!start.points.empty()) s.origin = toPoint3(start.points.front());
-    s.spreadPoints(reach, progress);
+    s.spreadPoints(options.reach, progress);
     s.makeQuadrics();
     s.fillQueue(progress);
 }

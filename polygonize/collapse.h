@@ -28,12 +28,22 @@ TriangleMesh thin(const TriangleMesh& mesh, std::int64_t triangles, const Progre
 // The result depends on the input alone, not on the number of threads.
 class Collapse {
   public:
-    // original: what distances are measured to, made of `surface`. Points of it that are farther than `reach`
-    // (world units) from `start` are parts that `start` has lost; they have no say.
-    // Costs about 0.3 ms a collapse: thin() a large mesh first.
+    struct Options {
+        // World units: points of the original that are farther than this from `start` are parts that `start` has lost;
+        // they have no say.
+        double reach = std::numeric_limits<double>::infinity();
+        // World units: distances of at most this are worth the same, and of such collapses the one whose vertex has the
+        // smallest quadric comes next. 0: the distance alone counts. Whether a limit helps
+        // depends on the solid (docs/fidelity.md): try several and measure, as BudgetChooser does.
+        double alike = 0;
+    };
+    // original: what distances are measured to, made of `surface`.
+    // Much dearer than thin(): thin() a large mesh first.
     // REQUIRES: start is closed, oriented and 2-manifold; `surface` and `original` outlive this.
     Collapse(const TriangleMesh& start, const TriangleMesh& surface, const DistanceTarget& original,
-             double reach = std::numeric_limits<double>::infinity(), const Progress& progress = {});
+             const Options& options, const Progress& progress = {});
+    Collapse(const TriangleMesh& start, const TriangleMesh& surface, const DistanceTarget& original)
+        : Collapse(start, surface, original, Options{}) {}
     ~Collapse();
     Collapse(Collapse&&) noexcept;
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -16,6 +17,13 @@ namespace {
 constexpr std::int64_t kThinned = 4;
 // Or, for a tolerance, as long as so much of it is left.
 constexpr double kThinningShare = 0.25;
+
+// For a number of triangles: distances that are worth the same (Collapse::Options::alike), as shares of the distance that a
+// collapse by quadrics alone ends with. The one that ends nearest wins.
+constexpr std::array<double, 3> kAlike{0.6, 0.42, 0.3};
+
+// A step that is itself so many times as far from level 0 as the best mesh so far is not collapsed.
+constexpr double kHopeless = 2;
 
 // A mesh of so few triangles is not thinned.
 constexpr std::int64_t kFewTriangles = 2000;
@@ -88,18 +96,24 @@ const TriangleMesh& BudgetChooser::thinned(const StepMesh& from, int times, cons
 
 BudgetChooser::Trial BudgetChooser::collapsed(const StepMesh& from, std::int64_t triangles,
                                               const Progress& progress) {
-    Trial trial{&from, from.mesh, 0};
-    if (from.topology.triangles > triangles) {
-        int times = 0;
-        for (std::int64_t left = from.topology.triangles / 4; left >= kThinned * triangles; left /= 4)
-            ++times;
-        Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_, from.voxel,
-                          progress);
+    if (from.topology.triangles <= triangles) return {&from, from.mesh, roughDistance(from.mesh, progress)};
+    int times = 0;
+    for (std::int64_t left = from.topology.triangles / 4; left >= kThinned * triangles; left /= 4) ++times;
+    const TriangleMesh& start = thinned(from, times, progress);
+    // How far a collapse gets that does not measure distances; one that does gets nearer.
+    const double rough = original_.distanceFrom(thin(start, triangles, progress), 0, progress).max;
+    std::optional<Trial> best;
+    for (const double share : kAlike) {
+        Collapse collapse(start, steps_.front().mesh, original_, {from.voxel, share * rough}, progress);
         collapse.reduce(triangles, std::numeric_limits<double>::infinity(), progress);
-        trial.mesh = collapse.mesh();
+        Trial trial{&from, collapse.mesh(), 0};
+        trial.distance = roughDistance(trial.mesh, progress);
+        const auto rank = [&](const Trial& t) {
+            return std::pair(static_cast<std::int64_t>(t.mesh.triangles.size()) > triangles, t.distance);
+        };
+        if (!best || rank(trial) < rank(*best)) best = std::move(trial);
     }
-    trial.distance = roughDistance(trial.mesh, progress);
-    return trial;
+    return *std::move(best);
 }
 
 BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& progress) {
@@ -122,6 +136,12 @@ BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& 
     std::optional<Trial> best;
     std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; i < tried.size(); ++i) {
+        if (best)
+            if (const double own = roughDistance(tried[i]->mesh, progress);
+                own > kHopeless * best->distance) {
+                list += fmt::format(", {} ({:.3g} by itself)", tried[i]->step, own);
+                continue;
+            }
         Trial trial = collapsed(*tried[i], triangles, progress);
         const auto count = static_cast<std::int64_t>(trial.mesh.triangles.size());
         fewest = std::min(fewest, count);
@@ -165,7 +185,8 @@ std::optional<TriangleMesh> BudgetChooser::collapsedWithin(const StepMesh& from,
     constexpr std::array<double, 6> kShares{0.25, 0.4, 0.55, 0.7, 0.85, 1.0};
     std::optional<TriangleMesh> within;
     if (from.step == 0) within = from.mesh;
-    Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_, from.voxel, progress);
+    Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_,
+                      {from.voxel, kShares.front() * distance}, progress);
     for (const double share : kShares) {
         collapse.reduce(4, share * distance, progress);
         TriangleMesh mesh = collapse.mesh();

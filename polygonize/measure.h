@@ -70,6 +70,9 @@ class DistanceTarget {
     // From p to the nearest point of the surface; triangles without area count as the segments that they are.
     double distance(const Point& p) const;
     NearestPoint nearest(const Point& p) const;
+    // The squared distance of p where it is above `enough`, else any number that is no larger than that. Much faster than
+    // distance() where the answer is mostly "near enough".
+    double squaredBeyond(const Point& p, double enough) const;
 
     // spacing: world units (0.5 = half a millimetre for images); 0 = corners and centroids of triangles only.
     // enough: maxBound need not fall below this; to prove a limit takes fewer samples than to know the maximum to

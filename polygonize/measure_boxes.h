@@ -25,9 +25,10 @@ class TriangleBoxes {
         double squared = std::numeric_limits<double>::infinity();  // squared distance
         std::uint32_t triangle = 0;
     };
-    // squaredTo(triangle) is the squared distance from p to it, called for those that may be nearest.
+    // squaredTo(triangle) is the squared distance from p to it, called for those that may be nearest. The search ends with
+    // the first one that is at most sqrt(enough) away.
     template <class SquaredTo>
-    Nearest nearest(const Point& p, const SquaredTo& squaredTo) const;
+    Nearest nearest(const Point& p, const SquaredTo& squaredTo, double enough = 0) const;
 
   private:
     static constexpr std::size_t kInLeaf = 4;
@@ -55,14 +56,17 @@ class TriangleBoxes {
 };
 
 template <class SquaredTo>
-TriangleBoxes::Nearest TriangleBoxes::nearest(const Point& p, const SquaredTo& squaredTo) const {
+TriangleBoxes::Nearest TriangleBoxes::nearest(const Point& p, const SquaredTo& squaredTo,
+                                              double enough) const {
     Nearest best;
+    double bound = best.squared;  // 0 when the search is over: no box is nearer than that
     tree_.nearestFirst(
-        best.squared, [&](std::size_t node) { return boxes_[node].squaredDistanceTo(p); },
+        bound, [&](std::size_t node) { return boxes_[node].squaredDistanceTo(p); },
         [&](const Range& leaf) {
             for (std::size_t i = leaf.begin; i < leaf.end; ++i)
                 if (const double found = squaredTo(order_[i]); found < best.squared)
                     best = {found, order_[i]};
+            bound = best.squared <= enough ? 0 : best.squared;
         });
     return best;
 }

@@ -277,11 +277,14 @@ struct DistanceTarget::Tree {
         return nearestOnTriangle<Kernel>(p, toPoint3(mesh.points[a]), toPoint3(mesh.points[b]),
                                          toPoint3(mesh.points[c]));
     }
+    TriangleBoxes::Nearest nearest(const Point3& p, double enough = 0) const {
+        return boxes.nearest(
+            {p.x(), p.y(), p.z()},
+            [&](std::uint32_t triangle) { return (p - nearestOn(p, triangle)).squared_length(); }, enough);
+    }
     Sample sampleAt(const Point3& p) const {
-        const auto nearest = boxes.nearest({p.x(), p.y(), p.z()}, [&](std::uint32_t triangle) {
-            return (p - nearestOn(p, triangle)).squared_length();
-        });
-        return {p, std::sqrt(nearest.squared), nearest.triangle};
+        const TriangleBoxes::Nearest found = nearest(p);
+        return {p, std::sqrt(found.squared), found.triangle};
     }
     double distanceToTriangle(const Point3& p, std::uint32_t triangle) const {
         return std::sqrt((p - nearestOn(p, triangle)).squared_length());
@@ -356,6 +359,10 @@ DistanceTarget::DistanceTarget(DistanceTarget&&) noexcept = default;
 DistanceTarget& DistanceTarget::operator=(DistanceTarget&&) noexcept = default;
 
 double DistanceTarget::distance(const Point& p) const { return tree_->sampleAt(toPoint3(p)).distance; }
+
+double DistanceTarget::squaredBeyond(const Point& p, double enough) const {
+    return tree_->nearest(toPoint3(p), enough).squared;
+}
 
 NearestPoint DistanceTarget::nearest(const Point& p) const {
     const std::uint32_t triangle = tree_->sampleAt(toPoint3(p)).nearest;

@@ -78,15 +78,17 @@ struct Row {
 };
 
 constexpr const char* kHeader =
-    "| | triangles | genus | components | volume | rms to, from | max to, from | defects | cuts | seconds |\n"
-    "|---|---|---|---|---|---|---|---|---|---|\n";
+    "| | | triangles | genus | components | volume | rms to, from | max to, from | defects | cuts | seconds "
+    "|\n"
+    "|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-std::string text(const Row& row) {
+std::string text(const std::string& group, const Row& row) {
     const MeshTopology& t = row.topology;
     return fmt::format(
-        "| {} | {} | {} | {} | {:+.2f} % | {:.3f}, {:.3f} | {:.2f}, {:.2f} | {} | {} | {:.2f} |\n", row.name,
-        t.triangles, row.defects() > 0 ? "-" : std::to_string(t.genus), t.components, 100 * row.volumeError,
-        row.to.rms, row.from.rms, row.to.max, row.from.max, row.defects(), row.intersections, row.seconds);
+        "| {} | {} | {} | {} | {} | {:+.2f} % | {:.3f}, {:.3f} | {:.2f}, {:.2f} | {} | {} | {:.2f} |\n",
+        group, row.name, t.triangles, row.defects() > 0 ? "-" : std::to_string(t.genus), t.components,
+        100 * row.volumeError, row.to.rms, row.from.rms, row.to.max, row.from.max, row.defects(),
+        row.intersections, row.seconds);
 }
 
 class Bench {
@@ -101,27 +103,32 @@ class Bench {
         fmt::print("### {}, equal resolution\n\nthe surface: {} triangles, volume {:.0f}\n\n{}", solid_.name,
                    solid_.truth.triangles.size(), truth.volume, kHeader);
         makeSteps();
-        print({measured("level 0: isowave", steps_.front().mesh, truth, stepSeconds_.front())});
+        print("level 0", {measured("isowave", steps_.front().mesh, truth, stepSeconds_.front())});
         bench::DenseField pooled = bench::denseField(*narrow_), wide = bench::denseField(*solid_.distance);
+        const Clock restricting;
         const bench::MultiRes grids(kLevels + 1, *narrow_);
+        const double restricted = restricting.seconds();
         std::string ratios;
         double pooling = 0;
         for (int level = 1; level <= kLevels; ++level) {
             const TriangleMesh& plain = steps_[std::size_t(level * kStepsPerLevel)].mesh;
             const TimedMesh& lean = lean_[std::size_t(level - 1)];
+            group_ = fmt::format("level {}", level);
             const Clock clock;
             pooled = bench::meanPooled(pooled);
             const TriangleMesh mean = bench::marchingCubes(pooled);
             pooling += clock.seconds();
             wide = bench::meanPooled(wide);
+            const Clock meshing;
+            const TriangleMesh multires = bench::multiresMesh(grids, level);
+            const double multiresSeconds = restricted + meshing.seconds();
             const std::vector<Row> rows{
-                measured(fmt::format("level {}: isowave", level), plain, truth,
-                         stepSeconds_[std::size_t(level)]),
+                measured("isowave", plain, truth, stepSeconds_[std::size_t(level)]),
                 measured("isowave, refined and thinned", lean.mesh, truth, lean.seconds),
                 measured("mean-pool", mean, truth, pooling),
                 measured("mean-pool, clamped to 16", bench::marchingCubes(wide), truth, pooling),
-                measured("multires", bench::multiresMesh(grids, level), truth, 0)};
-            print(rows);
+                measured("multires", multires, truth, multiresSeconds)};
+            print(group_, rows);
             const std::vector<double> kept = rmsOfKept(truth.mesh, {&plain, &lean.mesh, &mean}, 1 << level);
             for (int own = 0; own < 2; ++own)
                 ratios += fmt::format("| {} {} | {:.2f} | {:.2f} | {:.2f} |\n", level,
@@ -143,14 +150,14 @@ class Bench {
         BudgetChooser chooser(steps_, {}, solid_.name);
         for (const double share : {0.01, 0.002}) {
             const auto wanted = static_cast<std::int64_t>(std::round(share * double(all)));
-            const std::string what = fmt::format("{:g} %: ", 100 * share);
+            group_ = fmt::format("{:g} %", 100 * share);
             std::vector<Row> rows;
             try {
                 Clock clock;
                 const BudgetMesh own = chooser.choose({Budget::Kind::triangles, double(wanted)});
-                rows.push_back(measured(fmt::format("{}isowave (step {})", what, own.step), own.mesh, level0,
-                                        clock.seconds()));
-                std::cerr << solid_.name << ", " << what << own.why << '\n';
+                rows.push_back(measured("isowave", own.mesh, level0, clock.seconds()));
+                std::cerr << solid_.name << ", " << group_ << ": step " << own.step << ", " << own.why
+                          << '\n';
             } catch (const std::exception& error) {
                 std::cerr << error.what() << '\n';
             }
@@ -158,10 +165,9 @@ class Bench {
                 Clock clock;
                 const TriangleMesh mesh = rival.decimate(level0.mesh, wanted);
                 const double seconds = clock.seconds();
-                if (!mesh.triangles.empty())
-                    rows.push_back(measured((rows.empty() ? what : "") + rival.name, mesh, level0, seconds));
+                if (!mesh.triangles.empty()) rows.push_back(measured(rival.name, mesh, level0, seconds));
             }
-            print(rows);
+            print(group_, rows);
         }
         fmt::print("\n");
     }
@@ -205,10 +211,11 @@ class Bench {
         row.from = DistanceTarget(mesh).distanceFrom(reference.mesh);
         row.volumeError = row.topology.volume / reference.volume - 1;
         if (!meshes_.empty()) {
-            std::string file = row.name;
+            std::string file = fmt::format("{}_{}_{}", solid_.name, group_, row.name);
             for (char& c : file)
-                if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.') c = '_';
-            writeMesh(meshes_ / fmt::format("{}_{}.ply", solid_.name, file), mesh, MeshFormat::ply);
+                if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
+            // Without normals: scripts/render then shades all alike.
+            writeMesh(meshes_ / (file + ".ply"), {mesh.points, mesh.triangles, {}}, MeshFormat::ply);
         }
         return row;
     }
@@ -234,14 +241,15 @@ class Bench {
         return sums;
     }
 
-    static void print(const std::vector<Row>& rows) {
-        for (const Row& row : rows) fmt::print("{}", text(row));
+    static void print(const std::string& group, const std::vector<Row>& rows) {
+        for (const Row& row : rows) fmt::print("{}", text(&row == &rows[0] ? group : "", row));
         std::fflush(stdout);
     }
 
     bench::FidelitySolid solid_;
     openvdb::FloatGrid::Ptr narrow_;
     std::filesystem::path meshes_;
+    std::string group_ = "level 0";  // of the rows that come next
     std::vector<StepMesh> steps_;
     std::vector<TimedMesh> lean_;      // by level, from 1
     std::vector<double> stepSeconds_;  // by level

@@ -49,8 +49,17 @@ TEST(TriangleBoxes, FindTheNearestOfAllTriangles) {
                 const auto found = boxes.nearest(p, [&](std::uint32_t t) { return ++asked, to(t); });
                 ASSERT_EQ(found.squared, nearest) << count << ' ' << size;
                 ASSERT_EQ(to(found.triangle), nearest);
+                // With "near enough" the search ends with the first one that is.
+                const std::size_t all = asked;
+                asked = 0;
+                const double enough = 4 * nearest + 1;
+                const auto near = boxes.nearest(
+                    p, [&](std::uint32_t t) { return ++asked, to(t); }, enough);
+                ASSERT_LE(near.squared, enough);
+                ASSERT_GE(near.squared, nearest);
+                ASSERT_LE(asked, all);
                 if (count == 20000 && size < 1) {
-                    ASSERT_LT(asked, 200u);  // seen 60
+                    ASSERT_LT(all, 200u);  // seen 60
                 }
             }
         }

@@ -56,8 +56,10 @@ TEST(DistanceTarget, AgreesWithASlowSearchOnTrianglesOfAllProportions) {
     std::uniform_real_distribution<double> unit(-0.5, 1.5);
     for (int i = 0; i < 400; ++i) {
         const Point q = {unit(random), unit(random), unit(random)};
-        EXPECT_NEAR(tree.distance(q), slowDistance(q, target),
-                    1e-7);  // the search is good to half the digits
+        const double slow = slowDistance(q, target);
+        EXPECT_NEAR(tree.distance(q), slow, 1e-7);  // the search is good to half the digits
+        EXPECT_NEAR(std::sqrt(tree.squaredBeyond(q, 0.5 * slow * slow)), slow, 1e-7);
+        EXPECT_LE(tree.squaredBeyond(q, 2 * slow * slow), 2 * slow * slow);
     }
 }
 
