@@ -39,9 +39,12 @@ function(isowave_warnings target)
   endif()
 endfunction()
 
-# isowave_test(NAME SOURCES a_test.cpp ... LIBS lib ...): one test program, one ctest entry a TEST().
+# isowave_test(NAME SOURCES a_test.cpp ... LIBS lib ... [PRECOMPILE header ...]): one test program, one ctest entry a
+# TEST(). Headers that cost seconds are parsed once for all sources, each of which still includes what it uses
+# (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without), and a release compiles with -O1: what the tests call is optimized,
+# they themselves need not be. Together that halves what compiling them takes.
 function(isowave_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   isowave_warnings(${name})
   target_compile_definitions(${name} PRIVATE
@@ -50,6 +53,12 @@ function(isowave_test name)
     ISOWAVE_BINARY="$<TARGET_FILE_DIR:${name}>/isowave")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h> ${arg_PRECOMPILE})
+  # With precompiled headers g++ 12 forgets that std::string is a system header: the same bug, more false alarms.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${name} PRIVATE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
+  endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
