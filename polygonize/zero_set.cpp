@@ -60,6 +60,27 @@ std::optional<ZeroSet::Foot> ZeroSet::foot(const Vec3d& point) const {
     return {};
 }
 
+std::vector<std::array<float, 3>> ZeroSet::normalsOf(const TriangleMesh& mesh,
+                                                     const Progress& progress) const {
+    std::vector<Vec3d> sums(mesh.points.size(), Vec3d(0.0));
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3d a = toVec(mesh.points[t[0]]);
+        const Vec3d normal = (toVec(mesh.points[t[1]]) - a).cross(toVec(mesh.points[t[2]]) - a);
+        for (const std::uint32_t v : t) sums[v] += normal;
+    }
+    std::vector<std::array<float, 3>> normals(mesh.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, normals.size(), kChunk), [&](const auto& range) {
+        progress.check();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const std::optional<Foot> found = foot(toVec(mesh.points[i]));
+            const double length = sums[i].length();
+            const Vec3d n = found ? found->normal : length > 0 ? sums[i] / length : Vec3d(0, 0, 1);
+            normals[i] = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
+        }
+    });
+    return normals;
+}
+
 Deviation deviationFrom(const ZeroSet& surface, const TriangleMesh& mesh, const Progress& progress) {
     std::vector<Sums> sums((mesh.triangles.size() + kChunk - 1) / kChunk);
     tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t chunk) {

@@ -1,8 +1,10 @@
 // The zero set of a spline near a point, and how well a mesh follows it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "base/progress.h"
 #include "volume/field.h"
@@ -25,6 +27,11 @@ class ZeroSet {
     // closer than the radius of curvature the foot is the nearest point to second order in the distance. Nothing
     // where it does not settle within kReach voxels of the point: at a fold, or where the function is flat.
     std::optional<Foot> foot(const openvdb::Vec3d& point) const;
+
+    // For meshes with vertices near the zero set: the normals of their feet; where there is none, the mean of the triangles'
+    // normals, weighted by area. The same for any number of threads.
+    std::vector<std::array<float, 3>> normalsOf(const TriangleMesh& mesh,
+                                                const Progress& progress = {}) const;
 
     double voxel() const { return voxel_; }  // shortest side, world units
 

@@ -278,6 +278,10 @@ constexpr Option kOptions[] = {
     {"--features", "", "",
      "measure parts, holes and cavities, and say up to which size they vanish (takes longer)", "lod info",
      [](Settings& s, const std::string&) { s.features = true; }},
+    {"--compact", "", "",
+     "with --refine: collapse each mesh down to about the triangles that it has without it; nearer to the "
+     "surface at the same size",
+     "lod mesh", [](Settings& s, const std::string&) { s.compact = true; }},
     {"--relax", "N", "0", "N rounds of sliding vertices along the surface: larger angles, same zero set",
      "lod mesh", [](Settings& s, const std::string& v) { s.relax = static_cast<int>(integer(v, 0, 1000)); }},
     {"--deviation", "", "", "measure how far triangles are from the zero set of the spline", "lod mesh",

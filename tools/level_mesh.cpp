@@ -1,4 +1,4 @@
-// make = choose the iso-value -> polygonize -> remove specks -> relax -> cut off at the border -> count -> tell
+// make = choose the iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at the border -> count -> tell
 // sampling = polygonize the same field finer -> remove specks -> count
 #include "tools/level_mesh.h"
 
@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "polygonize/clip.h"
+#include "polygonize/collapse.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/relax.h"
 #include "tools/steps.h"
@@ -146,6 +147,12 @@ LevelMesher::LevelMesher(const Settings& settings, const std::optional<Solid::Bo
     if (settings.preserveVolume && settings.protectThin)
         throw UsageError(
             "--preserve-volume and --protect-thin exclude each other: each chooses the iso-value of a level");
+    if (settings.compact && settings.refine == 1)
+        throw UsageError("--compact collapses what --refine 2 or 4 adds; give one of them");
+    if (settings.compact && settings.relax > 0)
+        throw UsageError(
+            "--compact and --relax exclude each other: one keeps the volume, the other goes back to the zero "
+            "set");
     if (settings.preserveVolume && openBorder)
         throw UsageError("--preserve-volume needs a closed surface; leave out --open-border");
 }
@@ -154,6 +161,16 @@ LevelMesher::~LevelMesher() = default;
 
 TriangleMesh LevelMesher::polygonizeAt(const BSplineField& field, double iso, int refine) const {
     return polygonize(field, {.refine = refine, .iso = iso}, console_.progress());
+}
+
+// A mesh on the zero set lies inside where the solid is convex, and coarse triangles cut off corners and tear walls. Finer
+// ones do so less, and collapsing them by volumes (Lindstrom and Turk) keeps what they have gained: docs/fidelity.md.
+void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const {
+    if (mesh.triangles.empty()) return;
+    const auto finer = static_cast<std::int64_t>(refine) * refine;
+    const bool normals = !mesh.normals.empty();
+    mesh = thin(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / finer, console_.progress());
+    if (normals) mesh.normals = ZeroSet(field, iso).normalsOf(mesh, console_.progress());
 }
 
 // The volume without the specks that will be removed.
@@ -292,6 +309,7 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
         level.mesh = polygonizeAt(field, level.iso, refine);
         if (step == 0) rememberLevel0(field, level.mesh);
         removal = removeSpecks(level.mesh, smallest);
+        if (settings_.compact) compact(level.mesh, refine, field, level.iso);
         if (settings_.relax > 0)
             relax(level.mesh, ZeroSet(field, level.iso), settings_.relax, console_.progress());
         if (openBorder_)

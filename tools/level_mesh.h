@@ -73,6 +73,7 @@ class LevelMesher {
     TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
     double smallestAt(int step, const BSplineField& field) const;
+    void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
     void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh);
     double isoPreservingVolume(int step, const BSplineField& field, double smallest) const;
     std::vector<double> thinValues(const BSplineField& field, int refine) const;

@@ -40,6 +40,20 @@ TEST(ZeroSet, FootOfAPointIsWhereTheSphereIs) {
     }
 }
 
+TEST(ZeroSet, NormalsOfAMeshAreThoseOfItsPointsFeet) {
+    const BSplineField field = fieldFromDistance(14, sphere(9), oblique());
+    const ZeroSet surface(field);
+    TriangleMesh mesh = polygonize(field);
+    const auto normals = surface.normalsOf(mesh);
+    ASSERT_EQ(normals.size(), mesh.points.size());
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        for (int a = 0; a < 3; ++a) ASSERT_NEAR(normals[i][a], mesh.normals[i][a], 1e-3);
+    // Far from the surface: the triangles' own.
+    for (Point& p : mesh.points) p[0] += 1000;
+    for (const auto& n : surface.normalsOf(mesh))
+        EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-5);
+}
+
 // A triangle with sides of a voxel sags by about h^2 / (8 r) from a sphere: half for h/2.
 TEST(Deviation, OfASphereIsTheSagOfItsTrianglesAndFallsFourfoldWithRefine) {
     for (const auto& transform : {openvdb::math::Transform::createLinearTransform(1), oblique()}) {

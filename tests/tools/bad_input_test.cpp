@@ -310,9 +310,9 @@ const std::vector<BadInput>& rows() {
          [](const Folder& f) {
              const Size size{36, 36, 20};  // read in 130 kB
              writeNrrd(f / "a.nrrd", size, ringAndBall(size, 10, 4, false));
-             return lod(f, "a.nrrd", {"--max-memory", "0.001"});
+             return lod(f, "a.nrrd", {"--max-memory", "0.0002"});
          },
-         {"a.nrrd", "memory", "MB", "crop", "--max-memory"}},
+         {"a.nrrd", "memory", "kB", "crop", "--max-memory"}},
         {"GreyImageOverTheMemoryLimit",
          3,
          [](const Folder& f) {

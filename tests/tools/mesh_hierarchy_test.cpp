@@ -196,7 +196,7 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
         {{"reverse", fine, "-o", out, "--scheme", "loop", "--crease", "30"}, 2, "--crease"},
         {{"reverse", fine}, 2, "-o"},
         {{"reverse", fine, "-o", out, "--details", fine}, 2, "what this command reads"},
-        {{"reverse", fine, "-o", out, "--details", out}, 2, "--details"},
+        {{"reverse", fine, "-o", out, "--details", out}, 2, "would get two results"},
         {{"rebuild", base, "--details", details, "-o", base}, 2, "what this command reads"},
         {{"rebuild", base, "--details", details, "--edited", fine, "-o", fine}, 2, "what this command reads"},
         {{"rebuild", base, "-o", out}, 2, "--details: is needed"},
