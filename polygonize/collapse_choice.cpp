@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "polygonize/measure_sample.h"
 
 namespace isowave {
 namespace {
@@ -30,14 +31,6 @@ constexpr std::int64_t kFewTriangles = 2000;
 
 // To rank candidates, so many triangles of level 0 are enough; what is reported is measured from all of them.
 constexpr std::size_t kRankingTriangles = 20'000;
-
-TriangleMesh everyFew(const TriangleMesh& mesh, std::size_t atMost) {
-    TriangleMesh result{mesh.points, {}, {}};
-    const std::size_t stride = std::max<std::size_t>(1, (mesh.triangles.size() + atMost - 1) / atMost);
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride)
-        result.triangles.push_back(mesh.triangles[i]);
-    return result;
-}
 
 std::string limitsText(const TopologyLimits& limits) {
     std::string text;

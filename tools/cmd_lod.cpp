@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/heap.h"
 #include "polygonize/measure.h"
+#include "polygonize/measure_sample.h"
 #include "polygonize/topology.h"
 #include "polygonize/zero_set.h"
 #include "tools/budgets.h"
@@ -76,25 +77,12 @@ class Wanted {
     std::optional<int> last_;
 };
 
+constexpr const char* kReport = "report.json";
+
 // From level 0 to a coarser level, which is far from most of it, the nearest triangle takes long to find: so
 // many triangles of level 0, evenly chosen, are enough for an rms to three digits and see every speck of a
 // few hundredths of a percent of the surface. In the other direction every vertex and centroid counts.
-constexpr const char* kReport = "report.json";
-
 constexpr std::size_t kReferenceTriangles = 50'000;
-
-// Every k-th triangle, each with points of its own when k > 1.
-TriangleMesh thinned(const TriangleMesh& mesh, std::size_t atMost) {
-    const std::size_t stride = (mesh.triangles.size() + atMost - 1) / atMost;
-    if (stride <= 1) return mesh;
-    TriangleMesh result;
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-        const auto first = static_cast<std::uint32_t>(result.points.size());
-        for (const std::uint32_t v : mesh.triangles[i]) result.points.push_back(mesh.points[v]);
-        result.triangles.push_back({first, first + 1, first + 2});
-    }
-    return result;
-}
 
 // Makes and measures one mesh a step, level 0 first: the others are measured against it.
 class Ladder {
@@ -174,7 +162,7 @@ class Ladder {
         if (step != 0 && !mesh.triangles.empty()) {
             if (!target_) {
                 releaseFreedMemory();  // leaves were made and dropped until here; now come large arrays
-                sample_ = thinned(reference_, kReferenceTriangles);
+                sample_ = everyFew(reference_, kReferenceTriangles);
                 target_.emplace(std::exchange(reference_, {}));
             }
             to = target_->sampledDistanceFrom(mesh, 0, console_.progress());

@@ -1,19 +1,14 @@
 #include "volume/image_kind.h"
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <map>
 #include <string>
 
+#include "volume/image_header.h"
+
 namespace isowave::imageio {
 namespace fs = std::filesystem;
 namespace {
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 FileKind kindByContent(const fs::path& path) {
     char start[132] = {};
