@@ -9,10 +9,14 @@
 // Equal resolution: levels 1, 2, 3, voxels of 2, 4, 8; measured against the solid's surface.
 //   isowave     fitDistance -> analyse -> polygonize; specks removed, as `isowave lod` does
 //   refined and thinned   the same with refine = 2, then thin() to a quarter: about as many triangles
+//   volume kept   refined and thinned at the iso-value that gives the level the volume of level 0 (--preserve-volume)
 //   mean-pool   means of 2x2x2 distances, level by level, marching cubes; clamped to 4 voxels, as isowave's are, and to 16
 //   multires    openvdb::tools::MultiResGrid of the distances clamped to 4, volumeToMesh
 // Equal triangles: 1 % and 0.2 % of level 0's mesh, which all of them get, and are measured against.
 //   isowave     BudgetChooser over all steps, as `isowave lod --ratio` does
+//
+// After them: rms over mean-pool's; "near" is from the middles of the surface's triangles that none of the meshes is farther
+// from than a voxel of the level; "left out" is the share of the surface that one mesh is farther from than that.
 //
 // Columns: genus and components of the mesh; volume against the surface's; distances in voxels of level 0, to the surface and
 // back from it; defects: edges without exactly two triangles that run through them in opposite directions, vertices whose
@@ -32,6 +36,7 @@
 #include "marching.h"
 #include "multires.h"
 #include "polygonize/collapse_choice.h"
+#include "polygonize/level_iso.h"
 #include "polygonize/mesh_writer.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/specks.h"
@@ -45,6 +50,8 @@ namespace {
 using namespace isowave;
 constexpr int kLevels = 3, kStepsPerLevel = 3;
 constexpr double kHalfWidth = 4;
+constexpr int kUsualVoxels = 128;
+constexpr std::size_t kOwn = 3;  // rows of isowave among those of a level, the first
 
 class Clock {
   public:
@@ -102,7 +109,7 @@ class Bench {
         const Reference truth(solid_.truth);
         fmt::print("### {}, equal resolution\n\nthe surface: {} triangles, volume {:.0f}\n\n{}", solid_.name,
                    solid_.truth.triangles.size(), truth.volume, kHeader);
-        makeSteps();
+        makeSteps(Lean::yes);
         print("level 0", {measured("isowave", steps_.front().mesh, truth, stepSeconds_.front())});
         bench::DenseField pooled = bench::denseField(*narrow_), wide = bench::denseField(*solid_.distance);
         const Clock restricting;
@@ -111,8 +118,11 @@ class Bench {
         std::string ratios;
         double pooling = 0;
         for (int level = 1; level <= kLevels; ++level) {
-            const TriangleMesh& plain = steps_[std::size_t(level * kStepsPerLevel)].mesh;
+            const auto at = static_cast<std::size_t>(level * kStepsPerLevel);
+            if (at >= steps_.size()) break;  // vanished
+            const TriangleMesh& plain = steps_[at].mesh;
             const TimedMesh& lean = lean_[std::size_t(level - 1)];
+            const TimedMesh& kept = volumeKept_[std::size_t(level - 1)];
             group_ = fmt::format("level {}", level);
             const Clock clock;
             pooled = bench::meanPooled(pooled);
@@ -125,25 +135,30 @@ class Bench {
             const std::vector<Row> rows{
                 measured("isowave", plain, truth, stepSeconds_[std::size_t(level)]),
                 measured("isowave, refined and thinned", lean.mesh, truth, lean.seconds),
+                measured("isowave, volume kept", kept.mesh, truth, kept.seconds),
                 measured("mean-pool", mean, truth, pooling),
                 measured("mean-pool, clamped to 16", bench::marchingCubes(wide), truth, pooling),
                 measured("multires", multires, truth, multiresSeconds)};
             print(group_, rows);
-            const std::vector<double> kept = rmsOfKept(truth.mesh, {&plain, &lean.mesh, &mean}, 1 << level);
-            for (int own = 0; own < 2; ++own)
-                ratios += fmt::format("| {} {} | {:.2f} | {:.2f} | {:.2f} |\n", level,
-                                      own == 0 ? "as it is" : "refined and thinned",
-                                      rows[own].to.rms / rows[2].to.rms,
-                                      rows[own].from.rms / rows[2].from.rms, kept[own] / kept[2]);
+            const Row& pool = rows[kOwn];
+            const Nearness near = nearness(truth.mesh, {&plain, &lean.mesh, &kept.mesh, &mean}, 1 << level);
+            for (std::size_t own = 0; own < kOwn; ++own)
+                ratios += fmt::format(
+                    "| {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f}, {:.2f} % | {:+.2f}, {:+.2f} % |\n",
+                    solid_.name, level, rows[own].name, rows[own].to.rms / pool.to.rms,
+                    rows[own].from.rms / pool.from.rms, near.rms[own] / near.rms[kOwn],
+                    100 * near.leftOut[own], 100 * near.leftOut[kOwn], 100 * rows[own].volumeError,
+                    100 * pool.volumeError);
         }
         fmt::print(
-            "\nrms over mean-pool's:\n\n| level | to | from | from, where all are near "
-            "|\n|---|---|---|---|\n{}\n",
+            "\nrms over mean-pool's; of both meshes what they leave out, and the volume:\n\n| solid | level "
+            "| "
+            "mesh | to | from | near | left out | volume |\n|---|---|---|---|---|---|---|---|\n{}\n",
             ratios);
     }
 
     void budgets() {
-        if (steps_.empty()) makeSteps();
+        if (steps_.empty()) makeSteps(Lean::no);
         const Reference level0(steps_.front().mesh);
         const auto all = static_cast<std::int64_t>(level0.mesh.triangles.size());
         fmt::print("### {}, equal triangles\n\nlevel 0: {} triangles\n\n{}", solid_.name, all, kHeader);
@@ -173,7 +188,8 @@ class Bench {
     }
 
   private:
-    void makeSteps() {
+    enum class Lean { no, yes };
+    void makeSteps(Lean lean) {
         Clock clock;
         double others = 0;  // all but levels
         const BSplineField finest = fitDistance(*narrow_, {.halfWidth = kHalfWidth});
@@ -183,9 +199,22 @@ class Bench {
             if (step % kStepsPerLevel == 0) stepSeconds_.push_back(clock.seconds() - others);
             const Clock counting;
             if (mesh.triangles.empty()) return;
-            if (step % kStepsPerLevel == 0 && step > 0 && step <= kLevels * kStepsPerLevel)
-                lean_.push_back(lean(field, stepSeconds_.back()));
             const MeshTopology topology = topologyOf(mesh);
+            if (step == 0) volume0_ = topologyOf(fine(field, 0)).volume;
+            if (lean == Lean::yes && step % kStepsPerLevel == 0 && step > 0 &&
+                step <= kLevels * kStepsPerLevel) {
+                lean_.push_back(refinedAndThinned(field, 0, stepSeconds_.back()));
+                const Clock choosing;
+                const double iso =
+                    isoOfVolume(
+                        [&](double at) {
+                            return volumeWithoutSpecks(fine(field, at), nodeVolume(field.transform()));
+                        },
+                        volume0_, kIsoLimit * field.K)
+                        .iso;
+                volumeKept_.push_back(
+                    refinedAndThinned(field, iso, stepSeconds_.back() + choosing.seconds()));
+            }
             steps_.push_back({step, std::move(mesh), topology, field.transform().voxelSize().length()});
             others += counting.seconds();
         });
@@ -195,11 +224,14 @@ class Bench {
         TriangleMesh mesh;
         double seconds;
     };
+    static constexpr int kRefine = 2;
+    static TriangleMesh fine(const BSplineField& field, double iso) {
+        return polygonize(field, {.refine = kRefine, .iso = iso});
+    }
     // Polygonized on half the spacing, then collapsed down to the triangles of the whole one.
-    static TimedMesh lean(const BSplineField& field, double secondsBefore) {
+    static TimedMesh refinedAndThinned(const BSplineField& field, double iso, double secondsBefore) {
         const Clock clock;
-        constexpr int kRefine = 2;
-        TriangleMesh mesh = polygonize(field, {.refine = kRefine});
+        TriangleMesh mesh = fine(field, iso);
         removeSpecks(mesh, nodeVolume(field.transform()));
         mesh = thin(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / (kRefine * kRefine));
         return {std::move(mesh), secondsBefore + clock.seconds()};
@@ -220,25 +252,36 @@ class Bench {
         return row;
     }
 
-    // From the middles of the surface's triangles to each mesh, over those that no mesh is farther from than `limit`: a
-    // part that one of them has lost does not drown what they say of the others.
-    static std::vector<double> rmsOfKept(const TriangleMesh& surface,
-                                         const std::vector<const TriangleMesh*>& meshes, double limit) {
+    // From the middles of the surface's triangles to each mesh, weighted by area. rms is over those that no mesh is farther
+    // from than `limit`: a part that one of them has lost does not drown what they say of the others.
+    struct Nearness {
+        std::vector<double> rms, leftOut;
+    };
+    static Nearness nearness(const TriangleMesh& surface, const std::vector<const TriangleMesh*>& meshes,
+                             double limit) {
         std::vector<DistanceTarget> targets;
         for (const TriangleMesh* mesh : meshes) targets.emplace_back(*mesh);
-        std::vector<double> sums(meshes.size(), 0.0), distances(meshes.size());
-        std::int64_t count = 0;
-        for (const auto& [a, b, c] : surface.triangles) {
-            Point middle;
-            for (int k = 0; k < 3; ++k)
-                middle[k] = (surface.points[a][k] + surface.points[b][k] + surface.points[c][k]) / 3;
-            for (std::size_t i = 0; i < targets.size(); ++i) distances[i] = targets[i].distance(middle);
+        Nearness result{std::vector<double>(meshes.size(), 0.0), std::vector<double>(meshes.size(), 0.0)};
+        std::vector<double> distances(meshes.size());
+        double whole = 0, near = 0;
+        for (const auto& [i, j, k] : surface.triangles) {
+            const openvdb::Vec3d a(surface.points[i].data()), b(surface.points[j].data()),
+                c(surface.points[k].data());
+            const openvdb::Vec3d middle = (a + b + c) / 3;
+            const double area = (b - a).cross(c - a).length() / 2;
+            for (std::size_t m = 0; m < targets.size(); ++m) {
+                distances[m] = targets[m].distance({middle[0], middle[1], middle[2]});
+                if (distances[m] > limit) result.leftOut[m] += area;
+            }
+            whole += area;
             if (*std::max_element(distances.begin(), distances.end()) > limit) continue;
-            ++count;
-            for (std::size_t i = 0; i < targets.size(); ++i) sums[i] += distances[i] * distances[i];
+            near += area;
+            for (std::size_t m = 0; m < targets.size(); ++m)
+                result.rms[m] += area * distances[m] * distances[m];
         }
-        for (double& sum : sums) sum = std::sqrt(sum / double(count));
-        return sums;
+        for (double& sum : result.rms) sum = std::sqrt(sum / near);
+        for (double& area : result.leftOut) area /= whole;
+        return result;
     }
 
     static void print(const std::string& group, const std::vector<Row>& rows) {
@@ -251,15 +294,16 @@ class Bench {
     std::filesystem::path meshes_;
     std::string group_ = "level 0";  // of the rows that come next
     std::vector<StepMesh> steps_;
-    std::vector<TimedMesh> lean_;      // by level, from 1
-    std::vector<double> stepSeconds_;  // by level
+    std::vector<TimedMesh> lean_, volumeKept_;  // by level, from 1
+    double volume0_ = 0;                        // of level 0
+    std::vector<double> stepSeconds_;           // by level
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
     std::string solid, only, meshes;
-    int voxels = 128;
+    int voxels = kUsualVoxels;
     bool usage = argc < 2;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -284,7 +328,9 @@ int main(int argc, char** argv) {
     keepFreedMemory();
     initializeVdb();
     try {
-        Bench bench(bench::fidelitySolid(solid, voxels), meshes);
+        bench::FidelitySolid made = bench::fidelitySolid(solid, voxels);
+        if (voxels != kUsualVoxels) made.name += fmt::format("-{}", voxels);
+        Bench bench(std::move(made), meshes);
         if (only != "budgets") bench.levels();
         if (only != "levels") bench.budgets();
     } catch (const InputError& error) {
