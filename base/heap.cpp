@@ -2,14 +2,20 @@
 
 #include <cstdlib>  // says whether this is glibc
 
-#ifdef __GLIBC__
+#ifdef ISOWAVE_WITH_MIMALLOC
+#include <mimalloc.h>
+#elif defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
 namespace isowave {
 
-void keepFreedMemory() {
-#ifdef __GLIBC__
+void setUpHeap() {
+#ifdef ISOWAVE_WITH_MIMALLOC
+    constexpr long kMillisecondsKept = 1'000'000;
+    mi_option_enable(mi_option_large_os_pages);
+    mi_option_set(mi_option_decommit_delay, kMillisecondsKept);
+#elif defined(__GLIBC__)
     constexpr int kNever = 2'000'000'000, kGrowBy = 64 << 20;
     constexpr int kLargestOnHeap = 32 << 20;  // the most that glibc takes: DEFAULT_MMAP_THRESHOLD_MAX
     mallopt(M_TRIM_THRESHOLD, kNever);
@@ -19,7 +25,9 @@ void keepFreedMemory() {
 }
 
 void releaseFreedMemory() {
-#ifdef __GLIBC__
+#ifdef ISOWAVE_WITH_MIMALLOC
+    mi_collect(true);
+#elif defined(__GLIBC__)
     malloc_trim(0);
 #endif
 }

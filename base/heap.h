@@ -1,17 +1,18 @@
-// How the process keeps its memory. For programs, in main(); a library has no say in it.
+// How the process keeps its memory. For programs, in main(): a library has no say in it, so this is a target of its own
+// (isowave_heap) that programs link.
 #pragma once
 
 namespace isowave {
 
-// Freed memory stays with the process and is used again, instead of going back to the system as soon as the top of the
-// heap is free: a job makes and drops hundreds of megabytes of leaves a step, and memory that is new to a process costs
-// a page fault for 4 KB, 0.1 to 10 us by machine. Without effect where the C library is not glibc.
-// Seen (2 cores of a virtual machine, analysis and synthesis at 160^3, ten times): 4.5 s of processor time without,
-// 2.6 s with, 15 % more memory at the peak.
-void keepFreedMemory();
+// A job makes and drops hundreds of megabytes of leaves of 2 KB a step. Programs that link this allocate with mimalloc, which
+// keeps what is freed for the next step, and after this call asks for pages of 2 MB where the system lends them
+// (transparent huge pages): memory that is new to a process costs a page fault for each page, and one for 4 KB takes 0.1
+// to 16 us by machine. Built with sanitizers or without mimalloc, it tells glibc to keep what is freed.
+// What it is worth: bench/RESULTS.md, "The allocator".
+void setUpHeap();
 
 // Gives back what was freed and kept so far: before a stage that takes memory of another shape than the stages before it
-// left. Costs a page fault for each page that is used again.
+// left.
 void releaseFreedMemory();
 
 }  // namespace isowave

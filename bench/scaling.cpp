@@ -73,7 +73,7 @@ double slope(const std::vector<Row>& rows, std::size_t column, std::size_t first
 }  // namespace
 
 int main(int argc, char** argv) {
-    keepFreedMemory();
+    setUpHeap();
     const int largest = argc > 1 ? std::atoi(argv[1]) : 1024;
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(argc > 2 ? std::atoi(argv[2]) : 2));

@@ -219,7 +219,7 @@ ISOWAVE_MEASURED(ReadPyramid)->Arg(0)->Arg(3)->Arg(6);
 }  // namespace
 
 int main(int argc, char** argv) {
-    isowave::keepFreedMemory();
+    isowave::setUpHeap();
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(number("ISOWAVE_BENCH_THREADS", 2)));
     benchmark::Initialize(&argc, argv);

@@ -8,6 +8,9 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
+if(NOT ISOWAVE_SANITIZE)
+  find_package(mimalloc 2.0 REQUIRED)
+endif()
 
 # OpenVDB ships only a Find module, in a folder that also holds a FindTBB of its own: put the folder on
 # the module path for this one call and take it off again.

@@ -16,9 +16,10 @@ install(TARGETS isowave ${targets} EXPORT isowaveTargets)
 install(EXPORT isowaveTargets NAMESPACE isowave:: DESTINATION ${package_dir})
 
 # Headers keep their folders: #include "wavelets/interval.h" with include/isowave on the path. Those of
-# isowave::measure come only with the library that they promise.
+# isowave::measure come only with the library that they promise, base/heap.h not at all: it is for our programs.
+set(left_out PATTERN "heap.h" EXCLUDE)
 if(NOT ISOWAVE_MEASURE)
-  set(left_out PATTERN "measure*.h" EXCLUDE)
+  list(APPEND left_out PATTERN "measure*.h" EXCLUDE)
 endif()
 foreach(module ${umbrella} subdivision)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${module})

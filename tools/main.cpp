@@ -70,7 +70,7 @@ int complain(int code, std::string message) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    isowave::keepFreedMemory();
+    isowave::setUpHeap();
     tools::installSignalHandlers();
     try {
         const int code = run(argc, argv);

@@ -147,7 +147,7 @@ std::string row(const std::string& name, const Job& job, const Job& own) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    keepFreedMemory();
+    setUpHeap();
     const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
     const int voxels = argument(1, 512), rounds = argument(2, 3), threads = argument(3, 2);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

@@ -325,7 +325,7 @@ int main(int argc, char** argv) {
                      "[--only levels|budgets] [--meshes FOLDER]\n";
         return 2;
     }
-    keepFreedMemory();
+    setUpHeap();
     initializeVdb();
     try {
         bench::FidelitySolid made = bench::fidelitySolid(solid, voxels);
