@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "volume/field.h"
 
@@ -37,8 +38,9 @@ class VdbParts {
     VdbParts& operator=(const VdbParts&) = delete;
 
     const openvdb::MetaMap& metadata() const;
-    // Null when there is no grid of that name. Throws InputError where the grid is damaged.
-    openvdb::GridBase::Ptr read(const std::string& gridName);
+    // The grids of these names, by several threads; null where there is none of that name. Throws InputError where one
+    // is damaged.
+    std::vector<openvdb::GridBase::Ptr> read(const std::vector<std::string>& gridNames);
     // Bytes of the file that were looked at so far.
     std::int64_t bytesRead() const;
 
@@ -47,8 +49,9 @@ class VdbParts {
     std::unique_ptr<State> state_;
 };
 
-// Temporary name, then rename. Throws OperationError. Blosc-compressed where OpenVDB has Blosc; single grids
-// can be read by openvdb::io::File, and vdb_print lists them.
+// Temporary name, then rename. Throws OperationError. Active values and masks, neither Blosc nor zip (files with either
+// are read); single grids can be read by openvdb::io::File, and vdb_print lists them. By several threads; beyond the
+// grids it takes 16 MB at most, whatever their size.
 void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
               const openvdb::MetaMap& metadata = {});
 

@@ -4,6 +4,8 @@
 #include <openvdb/io/File.h>
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "volume/vdb_file.h"
@@ -17,6 +19,8 @@ constexpr const char* kK = "isowave:K";
 constexpr const char* kAxes = "isowave:axes";
 const std::string kSource = "isowave:source:";
 constexpr const char* kPyramid = "pyramid";
+constexpr const char* kControlPoints = "control_points";
+constexpr const char* kShape = "shape";
 
 std::string shapeName(std::size_t step) { return fmt::format("shape_{:03}", step); }
 std::string detailsName(std::size_t step) { return fmt::format("details_{:03}", step); }
@@ -32,14 +36,15 @@ openvdb::GridBase::ConstPtr named(const typename Grid::ConstPtr& grid, const std
 // The parts of a file, by name.
 class Parts {
   public:
-    explicit Parts(const std::filesystem::path& path) : file_(path.string()), parts_(path) {}
-
-    const openvdb::MetaMap& metadata() const { return parts_.metadata(); }
-    std::int64_t bytesRead() const { return parts_.bytesRead(); }
+    // Reads the parts of these names.
+    Parts(std::string file, VdbParts& parts, const std::vector<std::string>& names) : file_(std::move(file)) {
+        const auto grids = parts.read(names);
+        for (std::size_t i = 0; i < names.size(); ++i) parts_[names[i]] = grids[i];
+    }
 
     template <class Grid>
     typename Grid::Ptr take(const std::string& name) {
-        const auto part = parts_.read(name);
+        const auto part = std::exchange(parts_.at(name), nullptr);
         if (!part)
             throw InputError(file_,
                              fmt::format("the pyramid's part '{}' is missing; the file is damaged", name));
@@ -52,7 +57,7 @@ class Parts {
 
   private:
     std::string file_;
-    VdbParts parts_;
+    std::map<std::string, openvdb::GridBase::Ptr> parts_;
 };
 
 template <class T>
@@ -91,8 +96,8 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
         meta.insertMeta(kSource + key, openvdb::StringMetadata(value));
 
     openvdb::GridCPtrVec grids;
-    grids.push_back(named<openvdb::FloatGrid>(pyramid.coarsest.controlPoints, "control_points"));
-    grids.push_back(named<Shape>(pyramid.coarsest.shape, "shape"));
+    grids.push_back(named<openvdb::FloatGrid>(pyramid.coarsest.controlPoints, kControlPoints));
+    grids.push_back(named<Shape>(pyramid.coarsest.shape, kShape));
     for (std::size_t s = 0; s < pyramid.steps.size(); ++s) {
         grids.push_back(named<Shape>(pyramid.steps[s].shape, shapeName(s)));
         grids.push_back(named<DetailGrid>(pyramid.steps[s].details, detailsName(s)));
@@ -125,19 +130,26 @@ Pyramid readHead(const std::string& file, const openvdb::MetaMap& metadata) {
 
 Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int64_t* bytesRead) {
     const std::string file = path.string();
-    Parts parts(path);
-    Pyramid pyramid = readHead(file, parts.metadata());
+    VdbParts all(path);
+    Pyramid pyramid = readHead(file, all.metadata());
+    const auto first = static_cast<std::size_t>(finestStep);
+    std::vector<std::string> names{kControlPoints, kShape};
+    for (std::size_t s = first; s < pyramid.steps.size(); ++s) {
+        names.push_back(shapeName(s));
+        names.push_back(detailsName(s));
+    }
+    Parts parts(file, all, names);
     pyramid.coarsest.K = pyramid.K;
-    pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>("control_points");
-    pyramid.coarsest.shape = parts.take<Shape>("shape");
+    pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>(kControlPoints);
+    pyramid.coarsest.shape = parts.take<Shape>(kShape);
     if (!pyramid.coarsest.shape->tree().hasSameTopology(pyramid.coarsest.controlPoints->tree()))
         throw InputError(file,
                          "the pyramid's parts 'control_points' and 'shape' differ; the file is damaged");
-    for (std::size_t s = static_cast<std::size_t>(finestStep); s < pyramid.steps.size(); ++s) {
+    for (std::size_t s = first; s < pyramid.steps.size(); ++s) {
         pyramid.steps[s].shape = parts.take<Shape>(shapeName(s));
         pyramid.steps[s].details = parts.take<DetailGrid>(detailsName(s));
     }
-    if (bytesRead) *bytesRead = parts.bytesRead();
+    if (bytesRead) *bytesRead = all.bytesRead();
     return pyramid;
 }
 

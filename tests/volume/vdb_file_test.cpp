@@ -5,6 +5,7 @@
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/tools/LevelSetSphere.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -17,6 +18,9 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "volume/distance.h"
+#include "volume/fit.h"
+#include "volume/grid_bytes.h"
 
 namespace isowave {
 namespace {
@@ -166,6 +170,85 @@ TEST_F(VdbFile, HoldsTheSameBytesEachTime) {
     field.controlPoints->tree().setValueOn(kCentre, 0.5f);
     writeField(folder / "d.vdb", field);
     EXPECT_NE(bytesOf(folder / "a.vdb").substr(21, 36), bytesOf(folder / "d.vdb").substr(21, 36));
+}
+
+// More leaves than a block of several threads.
+BSplineField manyLeaves() {
+    const BSplineField field = ballField(36);
+    EXPECT_GT(field.controlPoints->tree().leafCount(), 512u);
+    return field;
+}
+
+TEST_F(VdbFile, HoldsTheSameBytesWhateverTheThreads) {
+    const BSplineField field = manyLeaves();
+    std::string one;
+    for (const std::size_t threads : {1, 2, 4}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        writeVdb(folder / "a.vdb", {field.controlPoints, field.shape});
+        if (one.empty()) one = bytesOf(folder / "a.vdb");
+        EXPECT_EQ(bytesOf(folder / "a.vdb"), one) << threads;
+        const VdbContent content = readVdb(folder / "a.vdb");
+        expectSameBits(*field.controlPoints, *openvdb::gridPtrCast<openvdb::FloatGrid>(content.grids.at(0)));
+        expectSameBits(*field.shape, *openvdb::gridPtrCast<openvdb::BoolGrid>(content.grids.at(1)));
+    }
+}
+
+TEST_F(VdbFile, LeavesInParallelAreTheBytesThatOpenVdbWrites) {
+    const BSplineField field = manyLeaves();
+    const auto buffersOf = [](const openvdb::GridBase& grid, std::uint32_t compression) {
+        std::ostringstream bytes;
+        openvdb::io::setDataCompression(bytes, compression);
+        const float background = 3.25f;
+        openvdb::io::setGridBackgroundValuePtr(bytes, &background);
+        grid.writeBuffers(bytes);
+        return bytes.str();
+    };
+    for (const openvdb::GridBase::ConstPtr& grid :
+         {openvdb::GridBase::ConstPtr(field.controlPoints), openvdb::GridBase::ConstPtr(field.shape)})
+        for (const std::uint32_t compression :
+             {std::uint32_t(openvdb::io::COMPRESS_NONE), std::uint32_t(openvdb::io::COMPRESS_ACTIVE_MASK)}) {
+            const auto parallel = writtenInParallel(grid);
+            EXPECT_NE(parallel, grid);
+            EXPECT_EQ(parallel->type(), grid->type());
+            EXPECT_TRUE(buffersOf(*parallel, compression) == buffersOf(*grid, compression));
+        }
+    const openvdb::GridBase::ConstPtr other = openvdb::DoubleGrid::create();
+    EXPECT_EQ(writtenInParallel(other), other);
+}
+
+// A grid that is there twice is written twice: each part can be read alone.
+TEST_F(VdbFile, HoldsATreeForEachGridThatSharesIt) {
+    const BSplineField field = ballField(6);
+    const auto twin = field.controlPoints->copy();
+    field.controlPoints->setName("one");
+    twin->setName("two");
+    writeVdb(folder / "a.vdb", {field.controlPoints, twin});
+    VdbParts parts(folder / "a.vdb");
+    const auto grids = parts.read({"two", "none", "one"});
+    EXPECT_EQ(grids.at(1), nullptr);
+    for (const std::size_t i : {0, 2})
+        expectSameBits(*field.controlPoints, *openvdb::gridPtrCast<openvdb::FloatGrid>(grids.at(i)));
+    EXPECT_EQ(readVdb(folder / "a.vdb").grids.size(), 2u);
+}
+
+// The file was written when Blosc was still used: isowave field of a 24^3 image of this ball with a hole, voxels of 1 mm.
+TEST_F(VdbFile, ReadsFilesOfItsOwnThatHoldBlosc) {
+    const auto inside = [](const openvdb::Coord& c) {
+        const double x = c.x() - 11.5, y = c.y() - 11.5, z = c.z() - 11.5;
+        return x * x + y * y + z * z < 49 && x * x + y * y > 4;
+    };
+    const BSplineField field = fitBinary(nodesFromFunction(inside, openvdb::CoordBBox(0, 0, 0, 23, 23, 23)));
+    const fs::path old = ISOWAVE_TEST_DATA "/vdb/ball_blosc.vdb";
+    const auto read = readLevelSet(old);
+    EXPECT_EQ(read->metaValue<std::string>("file_compression"), "blosc + active values");
+    expectSameBits(*field.controlPoints, *read);
+    VdbParts parts(old);
+    expectSameBits(*field.controlPoints,
+                   *openvdb::gridPtrCast<openvdb::FloatGrid>(parts.read({"field"}).at(0)));
+    std::string bytes = bytesOf(old);
+    bytes[bytes.size() / 2] ^= 1;
+    put(folder / "bad.vdb", bytes);
+    EXPECT_THAT(refusal(folder / "bad.vdb"), HasSubstr("is damaged"));
 }
 
 TEST_F(VdbFile, IsReadByOpenVdbGridByGrid) {
