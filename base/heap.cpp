@@ -1,6 +1,8 @@
 #include "base/heap.h"
 
+#include <atomic>
 #include <cstdlib>  // says whether this is glibc
+#include <new>
 
 #ifdef ISOWAVE_WITH_MIMALLOC
 #include <mimalloc.h>
@@ -8,11 +10,41 @@
 #include <malloc.h>
 #endif
 
+#ifdef ISOWAVE_WITH_MIMALLOC
+// mimalloc is C: its own operator new ends the program where memory does not suffice. These throw; the other forms of new
+// and all of delete are its own.
+namespace {
+
+// Let go of at the first failure: a tree of OpenVDB is destroyed by tasks, and they need memory too.
+std::atomic<void*> reserve{nullptr};
+constexpr std::size_t kReserveBytes = 32 << 20;
+
+void* orThrow(void* memory) {
+    if (memory == nullptr) {
+        mi_free(reserve.exchange(nullptr));
+        throw std::bad_alloc();
+    }
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return orThrow(mi_malloc(size)); }
+void* operator new[](std::size_t size) { return orThrow(mi_malloc(size)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return orThrow(mi_malloc_aligned(size, static_cast<std::size_t>(alignment)));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+    return orThrow(mi_malloc_aligned(size, static_cast<std::size_t>(alignment)));
+}
+#endif
+
 namespace isowave {
 
 void setUpHeap() {
 #ifdef ISOWAVE_WITH_MIMALLOC
     constexpr long kMillisecondsKept = 1'000'000;
+    reserve = mi_malloc(kReserveBytes);
     mi_option_enable(mi_option_large_os_pages);
     mi_option_set(mi_option_decommit_delay, kMillisecondsKept);
 #elif defined(__GLIBC__)

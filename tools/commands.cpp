@@ -269,8 +269,8 @@ constexpr Option kOptions[] = {
      "each level at the iso-value that gives it the volume of level 0, to 0.01 %", "lod mesh",
      [](Settings& s, const std::string&) { s.preserveVolume = true; }},
     {"--protect-thin", "", "",
-     "each level at the least iso-value that keeps thin walls and rods together; thickens less with --refine "
-     "2",
+     "each level at the least iso-value that keeps thin walls and rods together; sampled twice as fine where "
+     "that leaves fewer holes in them",
      "lod mesh", [](Settings& s, const std::string&) { s.protectThin = true; }},
     {"--keep-specks", "", "",
      "coarser levels keep components and cavities that are smaller than one of their nodes", "lod mesh",

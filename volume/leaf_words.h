@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "volume/vdb.h"
@@ -43,15 +44,19 @@ LeafWords negativeWordsOf(const Value* values) {
     return words;
 }
 
-// 512 values, -K where inside and +K elsewhere.
+// 512 values, -K where inside and +K elsewhere. By the sign bits of four values at a time: which bits are set no branch
+// predictor can know.
 inline void fillBySign(const LeafWords& inside, float K, float* values) {
-    for (const std::uint64_t word : inside) {
-        if (word == 0 || ~word == 0)
-            std::fill_n(values, 64, word ? -K : K);
-        else
-            for (int i = 0; i < 64; ++i) values[i] = word >> i & 1 ? -K : K;
-        values += 64;
-    }
+    static constexpr auto kSigns = [] {
+        std::array<std::array<std::uint32_t, 4>, 16> signs{};
+        for (std::uint32_t four = 0; four < 16; ++four)
+            for (int i = 0; i < 4; ++i) signs[four][i] = (four >> i & 1) << 31;
+        return signs;
+    }();
+    const auto plus = std::bit_cast<std::uint32_t>(K);
+    for (std::uint64_t word : inside)
+        for (int row = 0; row < 16; ++row, word >>= 4, values += 4)
+            for (int i = 0; i < 4; ++i) values[i] = std::bit_cast<float>(plus ^ kSigns[word & 15][i]);
 }
 
 }  // namespace isowave

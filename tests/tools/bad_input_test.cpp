@@ -69,7 +69,12 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.stl.gz");
          },
          {"a.stl.gz", "gunzip"}},
-        {"NoName", 2, [](const Folder& f) { return Arguments{"lod", "", "-o", (f / "out").string()}; }, {"empty"}},
+        {"NoName",
+         2,
+         [](const Folder& f) {
+             return Arguments{"lod", "", "-o", (f / "out").string()};
+         },
+         {"empty"}},
         {"EmptyImage",
          3,
          [](const Folder& f) {
@@ -626,6 +631,24 @@ TEST(FullDisk, LeavesNothingOfASingleFile) {
         EXPECT_EQ(result.exitCode, 1) << result.err;
         EXPECT_EQ(result.errorLines(), 1) << result.err;
         EXPECT_EQ(folder.snapshot(), before) << command[0];
+    }
+}
+
+// Wherever it runs out: while trees grow, and, a few megabytes further, while what was made is let go of.
+TEST(Memory, ThatDoesNotSufficeIsSaidInOneLineAndLeavesNothing) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers need terabytes of address space";
+#endif
+    const Folder folder;
+    const std::string part = std::string(ISOWAVE_TEST_DATA) + "/meshes/gearwheel.bin.stl";
+    for (const rlim_t megabytes : {200, 230, 245}) {
+        const Result result =
+            isowave({"lod", part, "--voxels", "360", "--threads", "1", "-o", (folder / "out").string()},
+                    {.mostMemory = megabytes << 20});
+        EXPECT_EQ(result.exitCode, 1) << megabytes << ": " << result.err;
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_NE(result.err.find("memory did not suffice"), std::string::npos) << result.err;
+        EXPECT_TRUE(folder.snapshot().empty());
     }
 }
 

@@ -149,6 +149,32 @@ TEST_F(RingBudget, CompactMeshesHaveTheTrianglesOfPlainOnesAndMoreOfTheVolume) {
     }
 }
 
+TEST(Compact, RealPartsKeepTheTopologyOfTheFinerMeshAtAQuarterOfItsTriangles) {
+    const Folder folder;
+    const std::string data = std::string(ISOWAVE_TEST_DATA) + "/";
+    for (const Arguments& input : std::vector<Arguments>{{data + "meshes/pinion.off", "--voxels", "48"},
+                                                         {data + "ct/cranium_crop.nrrd", "--iso", "300"}}) {
+        const auto levels = [&](const Arguments& more) {
+            Arguments arguments{"lod", "-o", (folder / "out").string(), "--levels", "2", "--refine", "2"};
+            arguments.insert(arguments.end(), input.begin(), input.end());
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            succeed(arguments);
+            return jsonFile(folder / "out/report.json")["levels"];
+        };
+        const Json fine = levels({}), compact = levels({"--compact"});
+        ASSERT_EQ(fine.size(), compact.size());
+        for (std::size_t l = 0; l < fine.size(); ++l) {
+            const std::string& what = input[0];
+            for (const char* key : {"parts", "genus", "cavities"})
+                EXPECT_EQ(compact[l][key], fine[l][key]) << what;
+            for (const char* key : {"closed", "manifold"}) EXPECT_EQ(compact[l][key], true) << what;
+            const auto of = [&](const Json& all, const char* key) { return all[l][key].get<double>(); };
+            EXPECT_LE(of(compact, "triangles"), 0.26 * of(fine, "triangles")) << what;
+            EXPECT_NEAR(of(compact, "volume") / of(fine, "volume"), 1, 0.01) << what;
+        }
+    }
+}
+
 TEST_F(RingBudget, RefusesWhatCannotBeInOneLine) {
     for (const auto& [more, code, part] : std::vector<std::tuple<Arguments, int, std::string>>{
              {{"--triangles", "0"}, 2, "between 4"},

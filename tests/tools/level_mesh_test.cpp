@@ -3,6 +3,7 @@
 
 #include "tests/tools/inputs.h"
 #include "tests/tools/run_isowave.h"
+#include "tests/zoo/zoo.h"
 
 namespace isowave::tools_test {
 namespace {
@@ -231,6 +232,29 @@ TEST_F(Levels, OfRealSolidsRiseOnlyBySamplingAndTearing) {
     EXPECT_GT(explained("meshes/pinion.off", {"--voxels", "64"}), 0);   // seen: 4 handles of levels 2 and 3
     EXPECT_GT(explained("meshes/gearwheel.bin.stl", {"--voxels", "64", "--steps", "0..9"}), 0);
     EXPECT_GT(explained("meshes/bones.off", {"--voxels", "64", "--steps", "0..9"}), 0);
+}
+
+// A solid of the zoo as a mask of -1 and 1, 4 voxels of background around it.
+void writeMask(const fs::path& file, const zoo::Solid& solid) {
+    const openvdb::Coord low = solid.box.min().offsetBy(-4), dim = solid.box.dim().offsetBy(8);
+    const Size size{dim.x(), dim.y(), dim.z()};
+    writeNrrd(file, size, sampled<std::int16_t>(size, [&](int x, int y, int z) {
+                  const openvdb::Coord c = low.offsetBy(x, y, z);
+                  return solid.box.isInside(c) && solid.inside(c) ? 1 : -1;
+              }));
+}
+
+TEST_F(Levels, OfTheZooRiseOnlyBySamplingAndTearing) {
+    int explained = 0, solids = 0;
+    for (const auto& group :
+         {zoo::smoothSolids(), zoo::cadSolids(), zoo::thinSolids(), zoo::noisySolids(), zoo::borderSolids()})
+        for (const zoo::Solid& solid : group) {
+            writeMask(folder / "zoo.nrrd", solid);
+            explained += explainedBySampling(lod("zoo", {}), solid.name + " ");
+            ++solids;
+        }
+    EXPECT_GE(solids, 12);
+    EXPECT_GT(explained, 0);
 }
 
 TEST_F(Levels, SayHowMuchOfARiseIsSampling) {

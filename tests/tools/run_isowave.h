@@ -74,8 +74,10 @@ struct Result {
 
 struct RunOptions {
     std::optional<rlim_t> largestFile = std::nullopt;  // bytes; a write beyond fails, as on a full disk
-    std::string standardOutput = {};                   // goes there; empty: is caught
-    std::function<bool(pid_t)> interruptWhen = {};     // of the program; SIGINT as soon as this is true
+    std::optional<rlim_t> mostMemory =
+        std::nullopt;                 // bytes of address space, of which the program itself takes 150 MB
+    std::string standardOutput = {};  // goes there; empty: is caught
+    std::function<bool(pid_t)> interruptWhen = {};  // of the program; SIGINT as soon as this is true
     rlim_t mostSeconds = 240;  // of CPU, which a busy machine does not use up; then killed
 };
 
@@ -100,6 +102,7 @@ inline Result isowave(const std::vector<std::string>& arguments, const RunOption
             ::setrlimit(resource, &limit);
         };
         if (options.largestFile) restrict(RLIMIT_FSIZE, *options.largestFile);
+        if (options.mostMemory) restrict(RLIMIT_AS, *options.mostMemory);
         restrict(RLIMIT_CPU, options.mostSeconds);
         ::execv(argv[0], argv.data());
         ::_exit(127);
