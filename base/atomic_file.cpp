@@ -11,6 +11,39 @@
 
 namespace isowave {
 
+namespace {
+constexpr std::streamsize kBlockBytes = 1 << 18, kBeginEach = 8 << 20;
+}
+
+AtomicFile::Buffer::Buffer() : block_(std::make_unique_for_overwrite<char[]>(kBlockBytes)) {
+    pubsetbuf(block_.get(), kBlockBytes);
+}
+
+AtomicFile::Buffer::~Buffer() {
+    close();  // while there is a block
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void AtomicFile::Buffer::watchDisk(const std::filesystem::path& file) {
+    descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+bool AtomicFile::Buffer::waitForDisk() const {
+    return descriptor_ < 0 || ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS;
+}
+
+std::streamsize AtomicFile::Buffer::xsputn(const char* bytes, std::streamsize count) {
+    const std::streamsize written = std::filebuf::xsputn(bytes, count);
+    notBegun_ += written;
+    if (descriptor_ >= 0 && notBegun_ >= kBeginEach) {
+#ifdef __linux__
+        ::sync_file_range(descriptor_, 0, /*to the end*/ 0, SYNC_FILE_RANGE_WRITE);
+#endif
+        notBegun_ = 0;
+    }
+    return written;
+}
+
 AtomicFile::AtomicFile(std::filesystem::path place) : place_(behindLinks(place)) {
     std::error_code error;
     const auto status = std::filesystem::status(place_, error);
@@ -20,17 +53,16 @@ AtomicFile::AtomicFile(std::filesystem::path place) : place_(behindLinks(place))
     temporary_ = place_;
     if (!direct_) temporary_ += ".part-" + std::to_string(::getpid());
     errno = 0;
-    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-    if (!stream_)
+    if (!buffer_.open(temporary_, std::ios::binary | std::ios::trunc | std::ios::out))
         throw OperationError(place_.string(), std::string("cannot write here (") + std::strerror(errno) +
                                                   "); check that the folder exists and is writable");
+    if (!direct_) buffer_.watchDisk(temporary_);
     stream_.exceptions(std::ios::badbit | std::ios::failbit);
 }
 
 AtomicFile::~AtomicFile() {
     if (committed_) return;
-    stream_.exceptions(std::ios::goodbit);
-    stream_.close();
+    buffer_.close();
     if (direct_) return;
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
@@ -38,23 +70,15 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
     errno = 0;
-    try {
-        stream_.flush();
-        stream_.close();
-    } catch (const std::ios_base::failure&) {
+    if (!stream_ || buffer_.pubsync() != 0 || !buffer_.close())
         throw OperationError(place_.string(), std::string("writing failed (") + std::strerror(errno) +
                                                   "); is the disk full? Nothing was left behind");
-    }
     committed_ = direct_;
     if (direct_) return;
     // Data on the disk before the name: a power cut must not leave an empty file under the good name.
-    if (const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC); fd >= 0) {
-        const int failed = ::fsync(fd);
-        ::close(fd);
-        if (failed != 0 && errno != EINVAL && errno != EROFS)
-            throw OperationError(place_.string(), std::string("writing failed (") + std::strerror(errno) +
-                                                      "); is the disk full?");
-    }
+    if (!buffer_.waitForDisk())
+        throw OperationError(place_.string(),
+                             std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
     std::error_code error;
     std::filesystem::rename(temporary_, place_, error);
     if (error)

@@ -34,6 +34,24 @@ TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneFails) {
     EXPECT_EQ(std::filesystem::file_size(folder / "a.txt"), 3u);
 }
 
+// Larger than what the disk is asked to begin with at a time; a byte at the front is written again at the end.
+TEST(AtomicFile, HoldsEveryByteOfALargeFile) {
+    const test::TempFolder folder("large");
+    std::string expected;
+    AtomicFile file(folder / "a");
+    for (int piece = 0; piece < 20; ++piece) {
+        const std::string bytes(1'000'003, static_cast<char>('a' + piece));
+        expected += bytes;
+        file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+    file.stream().seekp(5);
+    file.stream() << 'Z';
+    expected[5] = 'Z';
+    file.commit();
+    std::ifstream in(folder / "a", std::ios::binary);
+    EXPECT_TRUE(std::string(std::istreambuf_iterator<char>(in), {}) == expected);
+}
+
 TEST(AtomicFile, RefusesAMissingFolderAndAFolder) {
     const test::TempFolder folder("missing");
     EXPECT_THROW(AtomicFile(folder / "no" / "a.txt"), OperationError);
