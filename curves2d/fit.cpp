@@ -289,6 +289,7 @@ void repair(RowField<Real>& field, const Region& inside, double floor, double ta
             const Progress& progress) {
     // White noise at 50 % takes some 20 passes; many times that means that the repair cannot succeed.
     constexpr int kMostPasses = 1000;
+    report.repairFloor = floor;
     floor *= field.K;
     target *= field.K;
     std::vector<std::int32_t> active = field.rowNumbers();
@@ -319,6 +320,7 @@ void repair(RowField<Real>& field, const Region& inside, double floor, double ta
         std::sort(active.begin(), active.end());
         active.erase(std::unique(active.begin(), active.end()), active.end());
     }
+    report.repairAgreed = active.empty();
 }
 
 template <class Real>

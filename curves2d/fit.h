@@ -20,8 +20,11 @@ struct Shape {
 struct FitReport {
     std::int64_t latticePoints = 0;  // of I
     std::int64_t disagreeing = 0;    // of these, whose sign is not the input's (0 unless the repair gave up)
-    int repairPasses = 0;            // passes until no lattice point needed repair
-    std::int64_t repaired = 0;       // control points changed by the repair, counted once a pass
+    int repairPasses = 0;            // passes that changed something
+    bool repairAgreed =
+        true;  // it stopped because every lattice point of I had its sign by the floor, not at the limit
+    double repairFloor = 0;     // of K: what s F has to reach for that
+    std::int64_t repaired = 0;  // control points changed by the repair, counted once a pass
 };
 
 struct BinaryFitOptions {

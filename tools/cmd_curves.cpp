@@ -13,6 +13,7 @@
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"
+#include "tools/repair_json.h"
 #include "tools/report.h"
 
 namespace isowave::tools {
@@ -73,16 +74,34 @@ curves2d::Fit fitMethod(const Settings& settings, const curves2d::Input& input) 
     return *settings.fit == FitMethod::binary ? curves2d::Fit::binary : curves2d::Fit::distance;
 }
 
-curves2d::RowField<float> fitted(const Settings& settings, const curves2d::Input& input, Console& console) {
+Json fitJson(curves2d::Fit method, const curves2d::DistanceFitOptions& options,
+             const curves2d::FitReport& report) {
+    Json json;
+    json["method"] = method == curves2d::Fit::binary ? "binary" : "distance";
+    if (method == curves2d::Fit::distance) {
+        json["half_width"] = options.halfWidth;
+        json["band"] = options.band;
+    }
+    addRepair(json, report);
+    return json;
+}
+
+struct Fitted {
+    curves2d::RowField<float> field;
+    Json json;  // how it went
+};
+
+Fitted fitted(const Settings& settings, const curves2d::Input& input, Console& console) {
     curves2d::DistanceFitOptions options;
     if (settings.halfWidth) options.halfWidth = *settings.halfWidth;
     options.band = settings.band.value_or(std::min(options.band, options.halfWidth));
     curves2d::FitReport report;
-    auto field = curves2d::fit(input.shape, fitMethod(settings, input), options, &report, console.progress());
+    const curves2d::Fit method = fitMethod(settings, input);
+    auto field = curves2d::fit(input.shape, method, options, &report, console.progress());
     if (report.disagreeing)
         console.say(fmt::format("{} of {} lattice points have another sign than the input",
                                 report.disagreeing, report.latticePoints));
-    return field;
+    return {std::move(field), fitJson(method, options, report)};
 }
 
 // Writes the wanted levels and keeps the rows of table and report.
@@ -199,12 +218,12 @@ class Scribe {
     std::size_t straightPieces_ = 0;
 };
 
-Json reportOf(const Settings& settings, const curves2d::Input& input, const Scribe& scribe,
+Json reportOf(const Settings& settings, const curves2d::Input& input, const Json& fit, const Scribe& scribe,
               const curves2d::Ladder& ladder) {
     Json json;
     json["version"] = 1;
     json["input"] = {{"path", settings.files[0].string()}, {"kind", input.kind}, {"pixel", input.pixel}};
-    json["fit"] = fitMethod(settings, input) == curves2d::Fit::binary ? "binary" : "distance";
+    json["fit"] = fit;
     if (settings.smooth)
         json["smooth"] = {{"deviation", scribe.smoothDeviation() * input.pixel},
                           {"straight_pieces", scribe.straightPieces()}};
@@ -234,14 +253,14 @@ int runCurves(const Settings& settings, Console& console) {
     curves2d::Input input =
         curves2d::readInput(settings.files[0], inputOptions(settings), console.progress());
     for (const std::string& remark : input.remarks) console.say(remark);
-    curves2d::RowField<float> field = fitted(settings, input, console);
+    Fitted fit = fitted(settings, input, console);
     input.shape = {};  // as large as the field
 
     Scribe scribe(settings, input, out);
     std::optional<int> lastStep;
     if (settings.levels && settings.levels->last) lastStep = *settings.levels->last * kStepsPerPlaneLevel;
     const curves2d::Ladder ladder = curves2d::climb(
-        std::move(field), lastStep,
+        std::move(fit.field), lastStep,
         [&](const auto& facts, const auto& f, const auto& curves) { scribe.visit(facts, f, curves); },
         console.progress());
     if (settings.levels && ladder.steps.back().step < settings.levels->first * kStepsPerPlaneLevel)
@@ -249,7 +268,7 @@ int runCurves(const Settings& settings, Console& console) {
                          fmt::format("ends at level {} with one node left; --levels begins at {}",
                                      ladder.steps.back().step / kStepsPerPlaneLevel, settings.levels->first));
 
-    const Json report = reportOf(settings, input, scribe, ladder);
+    const Json report = reportOf(settings, input, fit.json, scribe, ladder);
     // What can fail for want of room comes first; then only names change.
     std::optional<OutputFile> sheetPlace;
     std::optional<AtomicFile> sheet;

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "tools/repair_json.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
 #include "volume/mesh_input.h"
@@ -139,12 +140,7 @@ Json fitJson(const Fitting& fitting, const FitReport& report) {
     } else {
         json["filter_passes"] = report.filterPasses;
     }
-    json["lattice_points"] = report.latticePoints;
-    json["disagreeing"] = report.disagreeing;
-    json["repair_passes"] = report.repairPasses;
-    json["repaired"] = report.repaired;
-    json["repair_floor"] = report.repairFloor;
-    json["stopped"] = report.repairAgreed ? "agreed" : "pass_limit";
+    addRepair(json, report);
     return json;
 }
 

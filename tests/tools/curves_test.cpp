@@ -41,7 +41,14 @@ TEST(CurvesCommand, WritesOneFileALevelATableASheetAndAReport) {
                                      "control_points", "peak_memory_bytes"));
     EXPECT_THAT(keysOf(report["input"]), UnorderedElementsAre("path", "kind", "pixel"));
     EXPECT_EQ(report["version"], 1);
-    EXPECT_EQ(report["fit"], "distance");
+    EXPECT_THAT(keysOf(report["fit"]),
+                UnorderedElementsAre("method", "half_width", "band", "lattice_points", "disagreeing",
+                                     "repair_passes", "repaired", "repair_floor", "stopped"));
+    EXPECT_EQ(report["fit"]["method"], "distance");
+    EXPECT_EQ(report["fit"]["disagreeing"], 0);
+    EXPECT_EQ(report["fit"]["stopped"], "agreed");
+    EXPECT_DOUBLE_EQ(report["fit"]["repair_floor"].get<double>(),
+                     1e-4 / report["fit"]["half_width"].get<double>());
     EXPECT_GT(report["coefficients_stored"], report["control_points"]);
     ASSERT_GT(report["steps"].size(), 8u);
     std::size_t files = 0;
