@@ -167,7 +167,7 @@ Json storiesOf(const wavelets::Pyramid& pyramid, const Settings& settings, Conso
         putTopology(story, level.topology);
         story.update(level.facts);
         story["change"] = changeJson(before, now);
-        story["sampling"] = mesher.sampling(step, field, level, before);
+        story["sampling"] = mesher.sampling(step, level, before);
         before = now;
         stories.push_back(std::move(story));
     }

@@ -116,10 +116,10 @@ class Ladder {
             level.update(made.facts);
             const SolidCounts now = countsOf(made.topology), before = counts_.value_or(now);
             level["change"] = changeJson(before, now);
-            level["sampling"] = mesher_.sampling(step, field, made, before);
+            level["sampling"] = mesher_.sampling(step, made, before);
             counts_ = now;
             measure(level, step, mesh);
-            putDeviation(level, field, made.iso, mesh);
+            putDeviation(level, made.field, made.iso, mesh);
             level["seconds"] = clock_.secondsSoFar() - begin;
             levels_.push_back(std::move(level));
         }

@@ -36,8 +36,8 @@ int runMesh(const Settings& settings, Console& console) {
     LevelMesher mesher(settings, solid.openBorder, LevelMesher::Facts::few, console, clock);
     if (step != 0 && mesher.needsLevel0())
         mesher.make(0, solid.field ? *solid.field : solid.pyramid->field(0, console.progress()));
-    const BSplineField field = fieldAtStep(std::move(solid), step, name, console, clock);
-    const auto [mesh, topology, iso, refine, facts] = mesher.make(step, field);
+    const auto [field, mesh, topology, iso, refine, facts] =
+        mesher.make(step, fieldAtStep(std::move(solid), step, name, console, clock));
     if (mesh.triangles.empty())
         throw InputError(name,
                          fmt::format("the whole solid has vanished at step {}; take a smaller one", step));

@@ -278,6 +278,9 @@ constexpr Option kOptions[] = {
     {"--features", "", "",
      "measure parts, holes and cavities, and say up to which size they vanish (takes longer)", "lod info",
      [](Settings& s, const std::string&) { s.features = true; }},
+    {"--refit", "", "",
+     "the field of each level fitted once more to the surface of level 0: nearer to it, and to its volume",
+     "lod mesh", [](Settings& s, const std::string&) { s.refit = true; }},
     {"--compact", "", "",
      "with --refine: collapse each mesh down to about the triangles that it has without it; nearer to the "
      "surface at the same size",

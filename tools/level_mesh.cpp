@@ -10,6 +10,7 @@
 #include "polygonize/clip.h"
 #include "polygonize/collapse.h"
 #include "polygonize/polygonize.h"
+#include "polygonize/refit.h"
 #include "polygonize/relax.h"
 #include "tools/steps.h"
 
@@ -135,6 +136,7 @@ struct LevelMesher::Level0 {
     double volume = 0;
     std::optional<ThinParts> thin;
     std::optional<SolidFeatures> features;
+    std::vector<SurfaceSample> surface;  // for --refit
 };
 
 LevelMesher::LevelMesher(const Settings& settings, const std::optional<Solid::Border>& openBorder,
@@ -199,6 +201,7 @@ void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& 
     level0_ = std::make_unique<Level0>();
     if (mesh.triangles.empty()) return;
     level0_->volume = volumeWithoutSpecks(mesh, 0);
+    if (settings_.refit) level0_->surface = surfaceSamples(mesh);
     if (wantsThin_) {
         const StageClock::Scope scope(clock_, "thin parts");
         level0_->thin.emplace(field, console_.progress());
@@ -262,7 +265,14 @@ double LevelMesher::smallestAt(int step, const BSplineField& field) const {
     return step == 0 || settings_.keepSpecks ? 0 : nodeVolume(field.transform());
 }
 
-LevelMesh LevelMesher::make(int step, const BSplineField& field) {
+BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const {
+    if (step == 0 || !settings_.refit || !level0_) return field;
+    const StageClock::Scope scope(clock_, "refit");
+    return refitted(field, level0_->surface, {}, console_.progress());
+}
+
+LevelMesh LevelMesher::make(int step, const BSplineField& given) {
+    const BSplineField field = fieldToDraw(step, given);
     LevelMesh level = madeAt(settings_.refine, step, field);
     if (step == 0 || !settings_.protectThin || openBorder_ || settings_.refine == kFinestRefine) return level;
     LevelMesh finer = madeAt(2 * settings_.refine, step, field);
@@ -271,8 +281,8 @@ LevelMesh LevelMesher::make(int step, const BSplineField& field) {
     return fewer ? std::move(finer) : std::move(level);
 }
 
-Json LevelMesher::sampling(int step, const BSplineField& field, const LevelMesh& level,
-                           const SolidCounts& before) const {
+Json LevelMesher::sampling(int step, const LevelMesh& level, const SolidCounts& before) const {
+    const BSplineField& field = level.field;
     SolidCounts finer = countsOf(level.topology);
     if (step == 0 || openBorder_ || level.refine == kFinestRefine || !isMore(finer, before)) return nullptr;
     const StageClock::Scope scope(clock_, "sampling");
@@ -297,6 +307,7 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
     const double smallest = smallestAt(step, field);
     const bool compared = step != 0 && level0_ && level0_->volume > 0;
     LevelMesh level;
+    level.field = field;
     level.refine = refine;
     std::optional<std::vector<double>> thin;
     if (compared && level0_->thin) thin = thinValues(field, refine);

@@ -34,7 +34,8 @@ bool isMore(const SolidCounts& now, const SolidCounts& before);
 std::string storyText(const Json& level, const std::string& unit);
 
 struct LevelMesh {
-    TriangleMesh mesh;  // cut off at an open border
+    BSplineField field;  // that of the step, or what --refit made of it
+    TriangleMesh mesh;   // cut off at an open border
     MeshTopology topology;
     double iso = 0;  // of the field
     int refine = 1;  // samples of a node along each axis
@@ -53,7 +54,7 @@ class LevelMesher {
     bool needsLevel0() const { return needsLevel0(settings_) || wantsThin_; }
     // The same of a mesher that is to be made with Facts::few.
     static bool needsLevel0(const Settings& settings) {
-        return settings.preserveVolume || settings.protectThin || settings.features;
+        return settings.preserveVolume || settings.protectThin || settings.features || settings.refit;
     }
     // With --protect-thin at twice the refinement where that has fewer components and handles.
     LevelMesh make(int step, const BSplineField& field);
@@ -64,13 +65,13 @@ class LevelMesher {
     // what level 0 has. {"refine": 2, "parts": 1, "genus": 25, "cavities": 0, "thin_kept": 0.9994}; null where nothing rises,
     // at refine 4 and for meshes cut off at an open border.
     // level: as make() gave it; its mesh is not needed any more.
-    Json sampling(int step, const BSplineField& field, const LevelMesh& level,
-                  const SolidCounts& before) const;
+    Json sampling(int step, const LevelMesh& level, const SolidCounts& before) const;
 
   private:
     struct Level0;
 
     TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
+    BSplineField fieldToDraw(int step, const BSplineField& field) const;
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
     double smallestAt(int step, const BSplineField& field) const;
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;

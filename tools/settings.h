@@ -68,10 +68,11 @@ struct Settings {
     bool preserveVolume = false;
     bool protectThin = false;
     bool keepSpecks = false;
-    bool features = false;                // measure parts, holes and cavities of level 0
-    bool compact = false;                 // collapse what refine > 1 gives down to the triangles of refine = 1
-    int relax = 0;                        // rounds of sliding vertices along the surface
-    bool deviation = false;               // measure triangles against the zero set
+    bool features = false;   // measure parts, holes and cavities of level 0
+    bool refit = false;      // fit the field of a level once more to level 0's surface
+    bool compact = false;    // collapse what refine > 1 gives down to the triangles of refine = 1
+    int relax = 0;           // rounds of sliding vertices along the surface
+    bool deviation = false;  // measure triangles against the zero set
     std::optional<std::string> jsonFile;  // "-" = standard output
     bool json = false;
     bool selfIntersections = false;

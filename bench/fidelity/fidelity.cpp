@@ -1,9 +1,13 @@
 // How far levels and budgets are from what they stand for, beside what users have today, as two markdown tables.
 //
-//     fidelity SOLID [--voxels N] [--only levels|budgets] [--meshes FOLDER]
+//     fidelity SOLID [--voxels N] [--only levels|budgets|volume] [--half-width W --band B] [--meshes FOLDER]
 //
 //   SOLID     plate, plate-turned, gyroid, trabecular, a closed mesh, or an image followed by @ISO (solids.h)
 //   --voxels  128 by default, along the longest axis; an image is taken as it is
+//   --only volume  what the volume errors of levels 1 and 2 consist of: of polygonizing, of thinning, and of the field by
+//             the thickness of the solid (volume_error.h); what --refit makes of them. Beside volumes, rms to the surface from
+//             30,000 triangles of the mesh
+//   --half-width, --band   of the fit, 4 and 2 voxels by default
 //   --meshes  where to put the meshes, for scripts/render
 //
 // Equal resolution: levels 1, 2, 3, voxels of 2, 4, 8; measured against the solid's surface.
@@ -37,21 +41,24 @@
 #include "multires.h"
 #include "polygonize/collapse_choice.h"
 #include "polygonize/level_iso.h"
+#include "polygonize/measure_sample.h"
 #include "polygonize/mesh_writer.h"
 #include "polygonize/polygonize.h"
+#include "polygonize/refit.h"
 #include "polygonize/specks.h"
 #include "rivals.h"
 #include "solids.h"
 #include "volume/fit.h"
+#include "volume_error.h"
 #include "wavelets/pyramid.h"
 
 namespace {
 
 using namespace isowave;
 constexpr int kLevels = 3, kStepsPerLevel = 3;
-constexpr double kHalfWidth = 4;
 constexpr int kUsualVoxels = 128;
-constexpr std::size_t kOwn = 3;  // rows of isowave among those of a level, the first
+constexpr std::size_t kFew = 30'000;  // triangles, for an rms
+constexpr std::size_t kOwn = 3;       // rows of isowave among those of a level, the first
 
 class Clock {
   public:
@@ -100,9 +107,10 @@ std::string text(const std::string& group, const Row& row) {
 
 class Bench {
   public:
-    Bench(bench::FidelitySolid solid, std::filesystem::path meshes)
+    Bench(bench::FidelitySolid solid, const DistanceFitOptions& fit, std::filesystem::path meshes)
         : solid_(std::move(solid)),
-          narrow_(bench::clamped(*solid_.distance, kHalfWidth)),
+          fit_(fit),
+          narrow_(bench::clamped(*solid_.distance, fit.halfWidth)),
           meshes_(std::move(meshes)) {}
 
     void levels() {
@@ -187,12 +195,53 @@ class Bench {
         fmt::print("\n");
     }
 
+    void volumes() {
+        constexpr int kCoarsest = 2, kFinest = 4;
+        const DistanceTarget surface(solid_.truth);
+        const double truth = topologyOf(solid_.truth).volume;
+        const std::vector<double> half = bench::halfThickness(solid_);
+        std::vector<SurfaceSample> level0;
+        std::string meshes, places;
+        const auto look = [&](int step, const BSplineField& field) {
+            if (step == 0) level0 = surfaceSamples(fine(field, 0));
+            if (step == 0 || step % kStepsPerLevel != 0) return;
+            const int level = step / kStepsPerLevel;
+            const auto at = [&](const BSplineField& of, int refine) {
+                TriangleMesh mesh = polygonize(of, {.refine = refine});
+                removeSpecks(mesh, nodeVolume(field.transform()));
+                return mesh;
+            };
+            const auto told = [&](const TriangleMesh& mesh) {
+                return fmt::format(" {:+.2f} %, {:.3f} |", 100 * (topologyOf(mesh).volume / truth - 1),
+                                   surface.sampledDistanceFrom(everyFew(mesh, kFew)).rms);
+            };
+            const BSplineField refit = refitted(field, level0);
+            const TriangleMesh finest = at(field, kFinest);
+            meshes += fmt::format("| {} | {} |{}{}{}{}{}{}\n", solid_.name, level, told(at(field, 1)),
+                                  told(at(field, kRefine)), told(refinedAndThinned(field, 0, 0).mesh),
+                                  told(finest), told(at(refit, kRefine)), told(at(refit, kFinest)));
+            const bench::VolumeByThickness parts = bench::volumeByThickness(solid_, half, field, finest);
+            places += fmt::format("| {} | {} |", solid_.name, level);
+            for (std::size_t i = 0; i < parts.gain.size(); ++i)
+                places += fmt::format(" {:+.2f} of {:.0f} |", 100 * parts.gain[i], 100 * parts.area[i]);
+            places += fmt::format(" {:.2f} |\n", 100 * parts.leftOut);
+        };
+        wavelets::descend(fitDistance(*narrow_, fit_), {.maxSteps = kCoarsest * kStepsPerLevel}, {}, look);
+        fmt::print(
+            "### {}, volume\n\n| solid | level | as it is | refined | refined and thinned | refined 4 times "
+            "| "
+            "refit, refined | refit, refined 4 times |\n|---|---|---|---|---|---|---|---|\n{}\n"
+            "| solid | level | thinner than 0.5 | 0.5 to 1 | 1 to 2 | 2 voxels and more | left out |\n"
+            "|---|---|---|---|---|---|---|\n{}\n",
+            solid_.name, meshes, places);
+    }
+
   private:
     enum class Lean { no, yes };
     void makeSteps(Lean lean) {
         Clock clock;
         double others = 0;  // all but levels
-        const BSplineField finest = fitDistance(*narrow_, {.halfWidth = kHalfWidth});
+        const BSplineField finest = fitDistance(*narrow_, fit_);
         wavelets::analyse(finest, {}, {}, [&](int step, const BSplineField& field) {
             TriangleMesh mesh = polygonize(field);
             removeSpecks(mesh, step == 0 ? 0 : nodeVolume(field.transform()));
@@ -290,7 +339,8 @@ class Bench {
     }
 
     bench::FidelitySolid solid_;
-    openvdb::FloatGrid::Ptr narrow_;
+    DistanceFitOptions fit_;
+    openvdb::FloatGrid::Ptr narrow_;  // clamped to fit_.halfWidth
     std::filesystem::path meshes_;
     std::string group_ = "level 0";  // of the rows that come next
     std::vector<StepMesh> steps_;
@@ -304,6 +354,7 @@ class Bench {
 int main(int argc, char** argv) {
     std::string solid, only, meshes;
     int voxels = kUsualVoxels;
+    DistanceFitOptions fit;
     bool usage = argc < 2;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -315,14 +366,19 @@ int main(int argc, char** argv) {
             voxels = std::atoi(argv[++i]);
         else if (word == "--only")
             only = argv[++i];
+        else if (word == "--half-width")
+            fit.halfWidth = std::atof(argv[++i]);
+        else if (word == "--band")
+            fit.band = std::atof(argv[++i]);
         else if (word == "--meshes")
             meshes = argv[++i];
         else
             usage = true;
     }
-    if (usage || solid.empty() || voxels < 16) {
+    if (usage || solid.empty() || voxels < 16 || !(fit.band > 0 && fit.band <= fit.halfWidth) ||
+        fit.halfWidth > bench::kWide) {
         std::cerr << "usage: fidelity plate|plate-turned|gyroid|trabecular|MESH|IMAGE@ISO [--voxels N] "
-                     "[--only levels|budgets] [--meshes FOLDER]\n";
+                     "[--only levels|budgets|volume] [--half-width W] [--band B] [--meshes FOLDER]\n";
         return 2;
     }
     setUpHeap();
@@ -330,9 +386,10 @@ int main(int argc, char** argv) {
     try {
         bench::FidelitySolid made = bench::fidelitySolid(solid, voxels);
         if (voxels != kUsualVoxels) made.name += fmt::format("-{}", voxels);
-        Bench bench(std::move(made), meshes);
-        if (only != "budgets") bench.levels();
-        if (only != "levels") bench.budgets();
+        Bench bench(std::move(made), fit, meshes);
+        if (only.empty() || only == "levels") bench.levels();
+        if (only.empty() || only == "budgets") bench.budgets();
+        if (only == "volume") bench.volumes();
     } catch (const InputError& error) {
         std::cerr << error.what() << '\n';
         return 3;

@@ -17,6 +17,14 @@ namespace isowave::testing {
 using openvdb::Coord;
 using openvdb::Vec3d;
 
+inline openvdb::math::Transform::Ptr oblique() {
+    auto transform = openvdb::math::Transform::createLinearTransform(0.5);
+    transform->preScale(Vec3d(1, 1.5, 0.8));
+    transform->postRotate(0.4, openvdb::math::Y_AXIS);
+    transform->postTranslate(Vec3d(100, -20, 3));
+    return transform;
+}
+
 // Control points c(x, y, z) on the box low .. high, +K elsewhere. Those other than ±K, and all within 3 of
 // one, are active.
 template <class ControlPoint>

@@ -16,14 +16,6 @@ using namespace isowave::testing;
 
 Vec3d toVec(const Point& p) { return {p[0], p[1], p[2]}; }
 
-openvdb::math::Transform::Ptr oblique() {
-    auto transform = openvdb::math::Transform::createLinearTransform(0.5);
-    transform->preScale(Vec3d(1, 1.5, 0.8));
-    transform->postRotate(0.4, openvdb::math::Y_AXIS);
-    transform->postTranslate(Vec3d(100, -20, 3));
-    return transform;
-}
-
 TEST(ZeroSet, FootOfAPointIsWhereTheSphereIs) {
     const BSplineField field = fieldFromDistance(14, sphere(9));
     const ZeroSet surface(field);

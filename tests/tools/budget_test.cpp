@@ -175,6 +175,32 @@ TEST(Compact, RealPartsKeepTheTopologyOfTheFinerMeshAtAQuarterOfItsTriangles) {
     }
 }
 
+TEST(Refit, LevelsOfARealHeadAreNearerToLevelZero) {
+    const Folder folder;
+    const auto levels = [&](const Arguments& more) {
+        Arguments all{"lod",      std::string(ISOWAVE_TEST_DATA) + "/ct/cranium_crop.nrrd",
+                      "--iso",    "300",
+                      "--levels", "0..2",
+                      "--refine", "2",
+                      "-o",       (folder / "out/head").string()};
+        all.insert(all.end(), more.begin(), more.end());
+        succeed(all);
+        return jsonFile(folder / "out/head/report.json")["levels"];
+    };
+    const Json plain = levels({}), refit = levels({"--refit"});
+    ASSERT_EQ(refit.size(), plain.size());
+    EXPECT_EQ(refit[0]["volume"], plain[0]["volume"]);
+    for (int l = 1; l <= 2; ++l) {
+        const auto share = [&](const char* key) {
+            return std::abs(refit[l][key].get<double>() / plain[l][key].get<double>());
+        };
+        EXPECT_LT(share("volume_error"), 0.5) << l;     // seen 0.32, 0.32
+        EXPECT_LT(share("rms_to_level0"), 0.9) << l;    // seen 0.73, 0.77
+        EXPECT_LT(share("rms_from_level0"), 0.9) << l;  // seen 0.74, 0.83
+        EXPECT_EQ(refit[l]["closed"], true);
+    }
+}
+
 TEST_F(RingBudget, RefusesWhatCannotBeInOneLine) {
     for (const auto& [more, code, part] : std::vector<std::tuple<Arguments, int, std::string>>{
              {{"--triangles", "0"}, 2, "between 4"},
