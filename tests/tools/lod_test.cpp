@@ -244,6 +244,29 @@ TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
     EXPECT_EQ(report["levels"][0]["genus"], 1);
 }
 
+// 256 x 256 x 400 voxels: 26 MB as a file, 105 MB as floats.
+TEST(LargeImage, IsNeverInMemoryAsAWholeAndGivesTheSameForEveryNumberOfThreads) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+    const Folder folder;
+    const Size size{256, 256, 400};
+    writeNrrd(folder / "rod.nrrd", size, sampled<std::uint8_t>(size, [](int x, int y, int z) {
+                  return std::hypot(x - 126.3, y - 130.2) < 60 + z % 160 / 8 && z > 8 && z < 390;
+              }));
+    std::string first;
+    for (const std::string threads : {"1", "2", "4"}) {
+        succeed({"lod", (folder / "rod.nrrd").string(), "--levels", "2", "--threads", threads, "-o",
+                 (folder / "out").string()});
+        const Json report = jsonFile(folder / "out/report.json");
+        EXPECT_EQ(report["levels"][0]["components"], 1);
+        EXPECT_LT(report["peak_memory_bytes"].get<double>(), 210e6) << threads;
+        const std::string mesh = contentOf(folder / "out/rod_L2.ply");
+        if (first.empty()) first = mesh;
+        EXPECT_EQ(mesh, first) << threads;
+    }
+}
+
 TEST(Labels, AreTakenTogetherOrOneByOne) {
     const Folder folder;
     const Size size{36, 36, 20};
