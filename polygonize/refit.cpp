@@ -13,6 +13,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "volume/cubic_weights.h"
 #include "volume/padded_leaf.h"
 
 namespace isowave {
@@ -64,13 +65,6 @@ std::vector<Located> locate(const std::vector<SurfaceSample>& surface, const BSp
     return samples;
 }
 
-// The four cubic B-splines that are not zero at t of the way from the second one's knot to the third's.
-std::array<double, 4> weightsAt(double t) {
-    const double u = 1 - t;
-    return {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
-            t * t * t / 6};
-}
-
 // The numerators and denominators of the control points, in leaves beside the field's own.
 class Shares {
   public:
@@ -120,7 +114,7 @@ void addShares(const Located* begin, const Located* end, const openvdb::FloatTre
     for (const Located* sample = begin; sample != end; ++sample) {
         const Coord first = firstOf(sample->at), low = first - sample->leaf;
         std::array<std::array<double, 4>, 3> B;
-        for (int axis = 0; axis < 3; ++axis) B[axis] = weightsAt(sample->at[axis] - (first[axis] + 1));
+        for (int axis = 0; axis < 3; ++axis) B[axis] = cubicWeights(sample->at[axis] - (first[axis] + 1));
         const auto each = [&](const auto& act) {
             for (int x = 0; x < 4; ++x)
                 for (int y = 0; y < 4; ++y)

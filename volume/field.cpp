@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "volume/cubic_weights.h"
+
 namespace isowave {
 namespace {
 
@@ -11,14 +13,12 @@ struct Weights {
     std::array<std::array<double, 4>, 3> slope;  // its derivative
 };
 
-// B on its four unit pieces in local t: (1-t)^3/6, (3t^3-6t^2+4)/6, (-3t^3+3t^2+3t+1)/6, t^3/6.
 Weights weightsAt(const openvdb::Vec3d& x) {
     Weights w;
     for (int a = 0; a < 3; ++a) {
         const double cell = std::floor(x[a]), t = x[a] - cell, u = 1 - t;
         w.first[a] = static_cast<int>(cell) - 1;
-        w.value[a] = {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6,
-                      (-3 * t * t * t + 3 * t * t + 3 * t + 1) / 6, t * t * t / 6};
+        w.value[a] = cubicWeights(t);
         w.slope[a] = {-u * u / 2, (3 * t * t - 4 * t) / 2, (-3 * t * t + 2 * t + 1) / 2, t * t / 2};
     }
     return w;

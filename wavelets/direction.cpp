@@ -329,6 +329,13 @@ void prefetch(const T* begin, std::size_t count) {
     for (const char* end = at + count * sizeof(T); at < end; at += kCacheLine) __builtin_prefetch(at);
 }
 
+// The leaf's values, on their way into the cache.
+const float* prefetchedValues(const FloatLeaf& leaf) {
+    const float* values = leaf.buffer().data();
+    prefetch(values, FloatLeaf::SIZE);
+    return values;
+}
+
 void prefetchShape(const Columns& columns, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
         for (const BoolLeaf* leaf : columns[i].leaves)
@@ -344,8 +351,8 @@ void readFine(const openvdb::FloatTree& controlPoints, const Setting& setting, C
     for (int k = 0; k < column.fineLeafCount(); ++k) {
         const FloatLeaf* leaf =
             column.fineLeaf(k) ? accessor.probeConstLeaf(column.fineOrigin(setting.axis, k)) : nullptr;
-        if (leaf) prefetch(leaf->buffer().data(), FloatLeaf::SIZE);
-        column.fineValues.push_back(leaf ? leaf->buffer().data() : setting.uniform.of(column.insideLeaf(k)));
+        column.fineValues.push_back(leaf ? prefetchedValues(*leaf)
+                                         : setting.uniform.of(column.insideLeaf(k)));
     }
 }
 
@@ -412,8 +419,7 @@ void readCoarse(const openvdb::FloatTree& tree, int axis, const ColumnLines& col
         const LeafWords need = (column.*needed)(axis, k);
         const openvdb::Coord origin = column.coarseOrigin(axis, k);
         const FloatLeaf* leaf = isEmpty(need) ? nullptr : accessor.probeConstLeaf(origin);
-        if (leaf) prefetch(leaf->buffer().data(), FloatLeaf::SIZE);
-        values.push_back(leaf ? leaf->buffer().data() : nullptr);
+        values.push_back(leaf ? prefetchedValues(*leaf) : nullptr);
         const LeafWords have = leaf ? wordsOf(leaf->getValueMask()) : LeafWords{};
         for (int x = 0; x < kLeafDim; ++x)
             if (const Word missing = need[x] & ~have[x]) {
