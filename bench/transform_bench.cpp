@@ -125,16 +125,27 @@ void Interval(benchmark::State& state) {
 BENCHMARK(Interval)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(16)->Arg(17)->Arg(32)->Arg(128)->Arg(1024);
 
 void IntervalBatch(benchmark::State& state) {
+    using wavelets::kLanes;
     const auto n = static_cast<int>(state.range(0));
-    wavelets::IntervalBatch batch;
-    batch.start(n, wavelets::IntervalBatch::kLanes);
-    for (auto _ : state) {
-        batch.analyse();
-        std::fill_n(batch.left(), 2 * wavelets::IntervalBatch::kLanes, 1.0f);
-        batch.synthesise();
-        benchmark::DoNotOptimize(batch.rows());
+    const std::size_t size = std::size_t(2 * n + 5) + wavelets::kSlack;
+    std::vector<std::vector<float>> fine(kLanes, std::vector<float>(size, 0.3f)), coarse(fine), detail(fine);
+    wavelets::AnalysisBatch analysis{n, kLanes, {}, {}, {}};
+    wavelets::SynthesisBatch synthesis{n, kLanes, {}, {}, {}, {}, {}};
+    for (int lane = 0; lane < kLanes; ++lane) {
+        analysis.fine[lane] = fine[lane].data();
+        synthesis.coarse[lane] = analysis.coarse[lane] = coarse[lane].data();
+        synthesis.detail[lane] = analysis.detail[lane] = detail[lane].data();
+        synthesis.left[lane] = synthesis.right[lane] = 1;
+        synthesis.fine[lane] = fine[lane].data() + 1;
     }
-    state.SetItemsProcessed(state.iterations() * (2 * n + 3) * wavelets::IntervalBatch::kLanes);
+    wavelets::BatchTransform transform;
+    for (auto _ : state) {
+        transform.analyse(analysis);
+        transform.synthesise(synthesis);
+        benchmark::DoNotOptimize(fine.data());
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(state.iterations() * (2 * n + 3) * kLanes);
 }
 BENCHMARK(IntervalBatch)
     ->Arg(1)

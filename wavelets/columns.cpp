@@ -1,56 +1,113 @@
 #include "wavelets/columns.h"
 
-#include <tbb/parallel_sort.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace isowave::wavelets {
 namespace {
 
-// A leaf with its place in the order: two comparisons of integers instead of three of coordinates behind a pointer.
-struct Placed {
-    std::int64_t uv;
-    std::int32_t index;
-    Column::Leaf* leaf;
-    friend bool operator<(const Placed& a, const Placed& b) {
-        return a.uv != b.uv ? a.uv < b.uv : a.index < b.index;
+// The internal nodes above leaves: 16 x 16 x 16 of them.
+using Node = openvdb::BoolTree::RootNodeType::ChildNodeType::ChildNodeType;
+constexpr int kNodeLog2 = Node::LOG2DIM, kNodeDim = 1 << kNodeLog2;
+
+// Where leaf (u, v) of a node, at `index` along the axis, is in the node's table.
+constexpr openvdb::Index slotOf(int axis, int u, int v, int index) {
+    const auto other = otherAxes(axis);
+    std::array<int, 3> at{};
+    at[axis] = index;
+    at[other[0]] = u;
+    at[other[1]] = v;
+    return static_cast<openvdb::Index>(at[0] << 2 * kNodeLog2 | at[1] << kNodeLog2 | at[2]);
+}
+
+// For each (u, v) of a node, which leaves along the axis there are.
+using ColumnMasks = std::array<std::uint16_t, kNodeDim * kNodeDim>;
+static_assert(sizeof(ColumnMasks::value_type) * 8 == kNodeDim);
+
+ColumnMasks masksOf(const Node& node, int axis) {
+    const auto other = otherAxes(axis);
+    ColumnMasks masks{};
+    for (auto child = node.getChildMask().beginOn(); child; ++child) {
+        const auto slot = static_cast<int>(child.pos());
+        const std::array<int, 3> at = {slot >> 2 * kNodeLog2, slot >> kNodeLog2 & (kNodeDim - 1),
+                                       slot & (kNodeDim - 1)};
+        masks[at[other[0]] << kNodeLog2 | at[other[1]]] |= static_cast<std::uint16_t>(1 << at[axis]);
     }
+    return masks;
+}
+
+// Nodes of the same origin but for the axis, along which they ascend.
+struct Block {
+    std::span<const Node* const> nodes;
+    std::vector<Column> columns;
+    std::vector<Column::Leaf*> leaves;  // of one column after the other
 };
+
+void findColumns(Block& block, int axis) {
+    const auto other = otherAxes(axis);
+    std::vector<ColumnMasks> masks;
+    for (const Node* node : block.nodes) masks.push_back(masksOf(*node, axis));
+    std::vector<std::size_t> starts;
+    for (int uv = 0; uv < kNodeDim * kNodeDim; ++uv) {
+        std::int64_t next = 0;  // index behind the last leaf of this (u, v)
+        bool any = false;
+        for (std::size_t i = 0; i < block.nodes.size(); ++i) {
+            const Node& node = *block.nodes[i];
+            for (unsigned bits = masks[i][uv]; bits != 0; bits &= bits - 1) {
+                const int within = std::countr_zero(bits);
+                const std::int64_t index = (node.origin()[axis] >> kLeafLog2) + within;
+                if (!any || index - next >= Columns::kGap) {
+                    starts.push_back(block.leaves.size());
+                    block.columns.push_back({node.origin()[other[0]] + (uv >> kNodeLog2) * kLeafDim,
+                                             node.origin()[other[1]] + (uv & (kNodeDim - 1)) * kLeafDim,
+                                             index,
+                                             {}});
+                } else {
+                    block.leaves.insert(block.leaves.end(), static_cast<std::size_t>(index - next), nullptr);
+                }
+                const auto slot = slotOf(axis, uv >> kNodeLog2, uv & (kNodeDim - 1), within);
+                block.leaves.push_back(node.getTable()[slot].getChild());
+                next = index + 1;
+                any = true;
+            }
+        }
+    }
+    starts.push_back(block.leaves.size());
+    for (std::size_t i = 0; i < block.columns.size(); ++i)
+        block.columns[i].leaves = std::span(block.leaves).subspan(starts[i], starts[i + 1] - starts[i]);
+}
 
 }  // namespace
 
 Columns::Columns(const openvdb::BoolTree& shape, int axis) {
     const auto other = otherAxes(axis);
-    std::vector<Column::Leaf*> found;
-    shape.getNodes(found);
-    std::vector<Placed> placed(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const openvdb::Coord& o = found[i]->origin();
-        placed[i] = {std::int64_t(o[other[0]]) * (std::int64_t(1) << 32) + o[other[1]], o[axis] >> kLeafLog2,
-                     found[i]};
-    }
-    tbb::parallel_sort(placed.begin(), placed.end());
-
-    struct Extent {
-        std::size_t at, count;
+    std::vector<const Node*> nodes;
+    shape.getNodes(nodes);
+    const auto sameBlock = [&](const Node* a, const Node* b) {
+        return a->origin()[other[0]] == b->origin()[other[0]] &&
+               a->origin()[other[1]] == b->origin()[other[1]];
     };
-    std::vector<Extent> extents;
-    leaves_.reserve(placed.size() + placed.size() / 4);
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        const Placed& p = placed[i];
-        const std::int64_t missing = i == 0 ? 0 : std::int64_t(p.index) - placed[i - 1].index - 1;
-        if (i == 0 || p.uv != placed[i - 1].uv || missing >= kGap) {
-            const openvdb::Coord& o = p.leaf->origin();
-            extents.push_back({leaves_.size(), 0});
-            columns_.push_back({o[other[0]], o[other[1]], p.index, {}});
-        } else {
-            leaves_.insert(leaves_.end(), static_cast<std::size_t>(missing), nullptr);
-        }
-        leaves_.push_back(p.leaf);
-        extents.back().count = leaves_.size() - extents.back().at;
+    std::sort(nodes.begin(), nodes.end(), [&](const Node* a, const Node* b) {
+        for (const int i : {other[0], other[1], axis})
+            if (a->origin()[i] != b->origin()[i]) return a->origin()[i] < b->origin()[i];
+        return false;
+    });
+    std::vector<Block> blocks;
+    for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
+        while (end < nodes.size() && sameBlock(nodes[begin], nodes[end])) ++end;
+        blocks.push_back({std::span(nodes).subspan(begin, end - begin), {}, {}});
     }
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-        columns_[i].leaves = std::span(leaves_).subspan(extents[i].at, extents[i].count);
+    tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t i) { findColumns(blocks[i], axis); });
+
+    std::size_t count = 0;
+    for (const Block& block : blocks) count += block.columns.size();
+    columns_.reserve(count);
+    for (Block& block : blocks) {
+        columns_.insert(columns_.end(), block.columns.begin(), block.columns.end());
+        leaves_.push_back(std::move(block.leaves));  // where they are: the columns' spans stay valid
+    }
 }
 
 }  // namespace isowave::wavelets

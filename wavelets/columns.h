@@ -19,15 +19,11 @@ constexpr std::array<int, 2> otherAxes(int axis) { return {axis == 0 ? 1 : 0, ax
 // How far apart neighbours along an axis are in a leaf's linear offsets (x << 6 | y << 3 | z).
 inline constexpr std::array<int, 3> kLeafStride = {64, 8, 1};
 
-// Offset of position 0 of each line of a leaf.
-using LineStarts = std::array<std::uint16_t, kLinesPerLeaf>;
-constexpr LineStarts lineStarts(int axis) {
+// Linear offset of a position (0 .. 7) of a leaf's line; lines are numbered as in LeafLines.
+constexpr int offsetOf(int axis, int line, int position) {
     const auto other = otherAxes(axis);
-    LineStarts starts{};
-    for (int line = 0; line < kLinesPerLeaf; ++line)
-        starts[line] = static_cast<std::uint16_t>((line >> kLeafLog2) * kLeafStride[other[0]] +
-                                                  (line & (kLeafDim - 1)) * kLeafStride[other[1]]);
-    return starts;
+    return (line >> kLeafLog2) * kLeafStride[other[0]] + (line & (kLeafDim - 1)) * kLeafStride[other[1]] +
+           position * kLeafStride[axis];
 }
 
 // One column, or a part of one: leaf k of it (k = position >> 3 along the axis) is leaves[k - first], or null where
@@ -50,10 +46,14 @@ struct Column {
     }
 };
 
-// All columns of a shape along an axis, sorted by (u, v) and position. So many leaves are missing between two columns
-// of the same (u, v) that no interval and no coarse leaf reaches from one to the other (an interval ends at most one
-// position beyond its run, and two are joined across four; the coarse leaf at the end of a column covers at most two
-// fine leaves beyond it): work and memory go with the leaves, not with the length of the domain.
+// All columns of a shape along an axis. So many leaves are missing between two columns of the same (u, v) that no interval
+// and no coarse leaf reaches from one to the other (an interval ends at most one position beyond its run, and two are
+// joined across four; the coarse leaf at the end of a column covers at most two fine leaves beyond it): work and memory go
+// with the leaves, not with the length of the domain.
+//
+// In blocks: the columns of one block share the internal nodes above their leaves, in this tree and in that of the coarse
+// ones, and no other block's columns do. Within a block they are sorted by (u, v) and position. The leaves themselves are
+// not looked at.
 class Columns {
   public:
     static constexpr int kGap = 4;
@@ -64,7 +64,7 @@ class Columns {
     const Column& operator[](std::size_t i) const { return columns_[i]; }
 
   private:
-    std::vector<Column::Leaf*> leaves_;
+    std::vector<std::vector<Column::Leaf*>> leaves_;  // by block
     std::vector<Column> columns_;
 };
 

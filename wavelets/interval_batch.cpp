@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "wavelets/blocks.h"
 #include "wavelets/interval_kernels.h"
 
 // What `objdump -d` shows (g++ 12 -O3, four lanes an instruction). applyShort's inner loop: 8 vmulpd that take their
@@ -17,99 +18,109 @@ namespace {
 typedef double Double2 __attribute__((vector_size(16)));
 typedef double Double4 __attribute__((vector_size(32)));
 
-bool hasFour() {
-#if defined(__x86_64__) && defined(__GNUC__)
-    return __builtin_cpu_supports("avx2");
-#else
-    return false;
-#endif
-}
+static_assert(kLanes == kBlock, "a batch's lanes are a block's lines");
+
+// Lanes that are not used read what the first does.
+struct AllLanes {
+    const float* lines[kLanes];
+    AllLanes(const float* const (&used)[kLanes], int lanes) {
+        for (int lane = 0; lane < kLanes; ++lane) lines[lane] = used[lane < lanes ? lane : 0];
+    }
+};
 
 }  // namespace
 
-IntervalBatch::IntervalBatch() : four_(hasFour()), ends_(2 * kLanes) {}
+double* BatchTransform::row0() { return scratch_.data() + kMargin * kLanes; }
 
-double* IntervalBatch::row0() { return scratch_.data() + kMargin * kLanes; }
-
-void IntervalBatch::start(int n, int lanes) {
-    assert(n >= 1 && 1 <= lanes && lanes <= kLanes);
-    n_ = n;
+void BatchTransform::start(int n) {
     const std::size_t fine = std::size_t(2 * n + 5) * kLanes;
     const std::size_t padded = std::size_t(kMargin + rowsOf(n) + kBandwidth) * kLanes;
     outAt_ = padded;
     foldedAt_ = 2 * padded;
-    if (rows_.size() < fine) rows_.resize(fine);
     if (scratch_.size() < 2 * padded + fine) scratch_.resize(2 * padded + fine);
     std::fill_n(row0() + rowsOf(n) * kLanes, kBandwidth * kLanes, 0.0);  // longer ones left values there
-    if (lanes < kLanes) std::fill_n(rows_.begin(), fine, 0.0f);
 }
 
-template <class Pack>
-[[gnu::always_inline]] inline void IntervalBatch::analyseBy() {
-    constexpr std::ptrdiff_t kStride = kLanes;
-    const int count = (2 * n_ + 5) * kLanes;
+template <class Pack, bool kWide>
+ISOWAVE_INLINE void BatchTransform::analyseBy(const AnalysisBatch& batch) {
+    const int n = batch.n, lanes = batch.lanes;
+    assert(n >= 1 && 1 <= lanes && lanes <= kLanes);
+    start(n);
     double* const y = row0();
-    double* const rows = y + kFirstCoarseRow * kStride;
-    for (int i = 0; i < count; ++i) rows[i] = rows_[i];
-    for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
-        analyseRows<Pack>(n_, kStride, y + lane, scratch_.data() + foldedAt_);
-    for (int i = 0; i < count; ++i) rows_[i] = static_cast<float>(rows[i]);
+    loadLanes<kWide>(AllLanes(batch.fine, lanes).lines, 2 * n + 5, y + kFirstCoarseRow * kLanes, kLanes);
+    for (int lane = 0; lane < lanes; lane += Pack::kWidth)
+        analyseRows<Pack>(n, kLanes, y + lane, scratch_.data() + foldedAt_);
+    storeLanes<kWide>(y + kFirstCoarseRow * kLanes, 2 * kLanes, n + 3, batch.coarse, lanes);
+    storeLanes<kWide>(y + kFirstDetailRow * kLanes, 2 * kLanes, n, batch.detail, lanes);
 }
 
-// rows() and ends, in double; returns row 0.
-[[gnu::always_inline]] inline double* IntervalBatch::loadCoefficients() {
-    const int count = (2 * n_ + 5) * kLanes;
-    double* const y = row0();
-    double* const rows = y + kFirstCoarseRow * kLanes;
-    for (int i = 0; i < count; ++i) rows[i] = rows_[i];
-    for (int i = 0; i < kLanes; ++i) {
-        y[kLeftRow * kLanes + i] = ends_[i];
-        y[kRightRow * kLanes + i] = ends_[kLanes + i];
+template <class Pack, bool kWide>
+ISOWAVE_INLINE void BatchTransform::synthesiseBy(const SynthesisBatch& batch) {
+    const int n = batch.n, lanes = batch.lanes;
+    assert(n >= 1 && 1 <= lanes && lanes <= kLanes);
+    start(n);
+    double *const y = row0(), *const out = y + outAt_;
+    loadLanes<kWide>(AllLanes(batch.coarse, lanes).lines, n + 3, y + kFirstCoarseRow * kLanes, 2 * kLanes);
+    loadLanes<kWide>(AllLanes(batch.detail, lanes).lines, n, y + kFirstDetailRow * kLanes, 2 * kLanes);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        y[kLeftRow * kLanes + lane] = batch.left[lane < lanes ? lane : 0];
+        y[kRightRow * kLanes + lane] = batch.right[lane < lanes ? lane : 0];
     }
-    return y;
+    for (int lane = 0; lane < lanes; lane += Pack::kWidth)
+        synthesiseRows<Pack>(n, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
+    storeLanes<kWide>(out + kFirstFineRow * kLanes, kLanes, 2 * n + 3, batch.fine, lanes);
 }
 
-[[gnu::always_inline]] inline void IntervalBatch::storeFine(const double* out) {
-    const int count = (2 * n_ + 3) * kLanes;
-    const double* const fine = out + kFirstFineRow * kLanes;
-    for (int i = 0; i < count; ++i) rows_[kLanes + i] = static_cast<float>(fine[i]);
+ISOWAVE_FOUR void BatchTransform::analyseByFour(const AnalysisBatch& batch) {
+    analyseBy<Two<Double4>, true>(batch);
+}
+ISOWAVE_EIGHT void BatchTransform::analyseByEight(const AnalysisBatch& batch) {
+    analyseBy<Alone<Double8>, true>(batch);
+}
+ISOWAVE_FOUR void BatchTransform::synthesiseByFour(const SynthesisBatch& batch) {
+    synthesiseBy<Two<Double4>, true>(batch);
+}
+ISOWAVE_EIGHT void BatchTransform::synthesiseByEight(const SynthesisBatch& batch) {
+    synthesiseBy<Alone<Double8>, true>(batch);
 }
 
-template <class Pack>
-[[gnu::always_inline]] inline void IntervalBatch::synthesiseBy() {
-    double *const y = loadCoefficients(), *const out = y + outAt_;
-    for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
-        synthesiseRows<Pack>(n_, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
-    storeFine(out);
+void BatchTransform::analyse(const AnalysisBatch& batch) {
+    switch (vectors_) {
+        case Vectors::two:
+            return analyseBy<Two<Double2>, false>(batch);
+        case Vectors::four:
+            return analyseByFour(batch);
+        case Vectors::eight:
+            return analyseByEight(batch);
+    }
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx2"))) void IntervalBatch::analyseByFour() { analyseBy<Two<Double4>>(); }
-__attribute__((target("avx2"))) void IntervalBatch::synthesiseByFour() { synthesiseBy<Two<Double4>>(); }
-#else
-void IntervalBatch::analyseByFour() { analyseBy<Two<Double2>>(); }
-void IntervalBatch::synthesiseByFour() { synthesiseBy<Two<Double2>>(); }
-#endif
-
-void IntervalBatch::analyse() {
-    if (four_) return analyseByFour();
-    analyseBy<Two<Double2>>();
-}
-
-void IntervalBatch::synthesise() {
-    if (four_) return synthesiseByFour();
-    synthesiseBy<Two<Double2>>();
+void BatchTransform::synthesise(const SynthesisBatch& batch) {
+    switch (vectors_) {
+        case Vectors::two:
+            return synthesiseBy<Two<Double2>, false>(batch);
+        case Vectors::four:
+            return synthesiseByFour(batch);
+        case Vectors::eight:
+            return synthesiseByEight(batch);
+    }
 }
 
 // Not on a hot path: two doubles an operation will do.
-void IntervalBatch::gain() {
+void BatchTransform::gain(const SynthesisBatch& batch) {
     using Pack = Two<Double2>;
-    double *const y = loadCoefficients(), *const out = y + outAt_;  // the map has 0 for the accessory values
-    double* const rows = y + kFirstCoarseRow * kLanes;
-    for (int i = 0; i < (2 * n_ + 5) * kLanes; ++i) rows[i] = std::abs(rows[i]);
-    for (int lane = 0; lane < kLanes; lane += Pack::kLanes)
-        gainRows<Pack>(n_, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
-    storeFine(out);
+    const int n = batch.n, lanes = batch.lanes, count = (2 * n + 5) * kLanes;
+    start(n);
+    double *const y = row0(), *const out = y + outAt_, *const rows = y + kFirstCoarseRow * kLanes;
+    std::fill_n(rows, count, 0.0);
+    std::fill_n(y + kLeftRow * kLanes, 2 * kLanes,
+                0.0);  // the map has 0 for the accessory values: they must be finite
+    loadLanes<false>(AllLanes(batch.coarse, lanes).lines, n + 3, rows, 2 * kLanes);
+    loadLanes<false>(AllLanes(batch.detail, lanes).lines, n, y + kFirstDetailRow * kLanes, 2 * kLanes);
+    for (int i = 0; i < count; ++i) rows[i] = std::abs(rows[i]);
+    for (int lane = 0; lane < lanes; lane += Pack::kWidth)
+        gainRows<Pack>(n, kLanes, y + lane, scratch_.data() + foldedAt_, out + lane);
+    storeLanes<false>(out + kFirstFineRow * kLanes, kLanes, 2 * n + 3, batch.fine, lanes);
 }
 
 }  // namespace isowave::wavelets

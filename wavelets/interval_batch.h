@@ -5,48 +5,60 @@
 #include <cstddef>
 #include <vector>
 
+#include "wavelets/vectors.h"
+
 namespace isowave::wavelets {
 
+// So many intervals at a time.
+inline constexpr int kLanes = 8;
+// So many values behind the last of each line must be there to be read; they are written as they are. (One thread: no
+// other may write them meanwhile.)
+inline constexpr int kSlack = kLanes - 1;
+
+// Intervals of n coarse intervals, `lanes` of them. Each pointer is to a line, whose values lie one behind the other:
+//   fine     f_0 .. f_(2n+2)       coarse   c_0 .. c_(n+2)       detail   d_0 .. d_(n-1)
+// What is written overlaps nothing that is read.
+struct AnalysisBatch {
+    int n = 0, lanes = 0;
+    const float* fine
+        [kLanes];  // beginning with the accessory value before f_0 and ending with the one behind f_(2n+2)
+    float *coarse[kLanes], *detail[kLanes];
+};
+struct SynthesisBatch {
+    int n = 0, lanes = 0;
+    const float *coarse[kLanes], *detail[kLanes];
+    float left[kLanes], right[kLanes];  // accessory values
+    float* fine[kLanes];
+};
+
 // Holds scratch memory: one object a thread; no call allocates once the longest interval has been seen.
-// Lane by lane, to the bit, it computes what IntervalTransform does; a lane's results do not depend on the others, so
-// lanes may stay unused.
-class IntervalBatch {
+// Interval by interval, to the bit, it computes what IntervalTransform does, and rounds the results to float.
+// REQUIRES: n >= 1, 1 <= lanes <= kLanes.
+class BatchTransform {
   public:
-    static constexpr int kLanes = 8;
+    // Tests choose narrower vectors.
+    explicit BatchTransform(Vectors vectors = widestVectors()) : vectors_(vectors) {}
 
-    IntervalBatch();
-
-    // lanes: how many of them will be filled; the others hold zeros. REQUIRES: n >= 1, 1 <= lanes <= kLanes.
-    void start(int n, int lanes);
-
-    // 2n + 5 rows of kLanes:
-    //   fine           row 0 left, rows 1 .. 2n+3 f, row 2n+4 right
-    //   coefficients   row 2j c_j (0 <= j <= n+2), row 2k+3 d_k (0 <= k < n); rows 1 and 2n+3 mean nothing
-    float* rows() { return rows_.data(); }
-    // Accessory values for synthesis, one a lane.
-    float* left() { return ends_.data(); }
-    float* right() { return ends_.data() + kLanes; }
-
-    void analyse();     // fine -> coefficients
-    void synthesise();  // coefficients, left() and right() -> fine, but not its rows 0 and 2n+4
+    void analyse(const AnalysisBatch& batch);
+    void synthesise(const SynthesisBatch& batch);
     // How far each coefficient moves at most, either way -> how far each fine control point does: the sum over the
     // absolute values of the map of synthesise() and of the coefficients. Attained, for one control point at a time.
-    void gain();
+    // Accessory values do not move.
+    void gain(const SynthesisBatch& batch);
 
   private:
-    template <class Pack>
-    void analyseBy();
-    template <class Pack>
-    void synthesiseBy();
-    double* loadCoefficients();
-    void storeFine(const double* out);
-    void analyseByFour();
-    void synthesiseByFour();
+    void start(int n);
     double* row0();
+    template <class Pack, bool kWide>
+    void analyseBy(const AnalysisBatch& batch);
+    template <class Pack, bool kWide>
+    void synthesiseBy(const SynthesisBatch& batch);
+    void analyseByFour(const AnalysisBatch& batch);
+    void analyseByEight(const AnalysisBatch& batch);
+    void synthesiseByFour(const SynthesisBatch& batch);
+    void synthesiseByEight(const SynthesisBatch& batch);
 
-    int n_ = 0;
-    bool four_ = false;  // this machine has vectors of four doubles
-    std::vector<float> rows_, ends_;
+    Vectors vectors_;
     std::vector<double> scratch_;  // rows with margins; the same for results; folded
     std::size_t outAt_ = 0, foldedAt_ = 0;
 };

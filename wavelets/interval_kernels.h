@@ -1,6 +1,6 @@
 // Analysis and synthesis of several intervals of one length side by side, one lane each. Everything is templated on
 // how many doubles go into one operation (Pack), and forced inline, so that one text serves a single interval
-// (interval.cpp), two lanes an instruction and, inside a function compiled for it, four (interval_batch.cpp). Every lane
+// (interval.cpp), two lanes an instruction and, inside functions compiled for them, four and eight (interval_batch.cpp). Every lane
 // sees the same operations in the same order whatever the Pack, and -ffp-contract=off keeps compilers from fusing
 // them: results are the same to the bit on every machine.
 //
@@ -12,14 +12,13 @@
 #include <cstddef>
 
 #include "wavelets/interval_tables.h"
-
-#define ISOWAVE_INLINE [[gnu::always_inline]] inline
+#include "wavelets/vectors.h"
 
 namespace isowave::wavelets {
 
 // One double.
 struct One {
-    static constexpr int kLanes = 1;
+    static constexpr int kWidth = 1;
     double a;
     ISOWAVE_INLINE static One load(const double* p) { return {*p}; }
     ISOWAVE_INLINE void store(double* p) const { *p = a; }
@@ -30,10 +29,28 @@ struct One {
     ISOWAVE_INLINE static One difference(const One& x, const One& y) { return {x.a - y.a}; }
 };
 
+// One of the machine's vectors.
+template <class Vector>
+struct Alone {
+    static constexpr int kWidth = sizeof(Vector) / sizeof(double);
+    Vector a;
+    ISOWAVE_INLINE static Alone load(const double* p) {
+        Alone x;
+        __builtin_memcpy(&x.a, p, sizeof(Vector));
+        return x;
+    }
+    ISOWAVE_INLINE void store(double* p) const { __builtin_memcpy(p, &a, sizeof(Vector)); }
+    ISOWAVE_INLINE void addProduct(double m, const Alone& x) { a += m * x.a; }
+    ISOWAVE_INLINE void subtractProduct(double m, const Alone& x) { a -= m * x.a; }
+    ISOWAVE_INLINE static Alone product(double m, const Alone& x) { return {m * x.a}; }
+    ISOWAVE_INLINE static Alone sum(const Alone& x, const Alone& y) { return {x.a + y.a}; }
+    ISOWAVE_INLINE static Alone difference(const Alone& x, const Alone& y) { return {x.a - y.a}; }
+};
+
 // Two of the machine's vectors: two independent chains hide half the latency.
 template <class Vector>
 struct Two {
-    static constexpr int kHalf = sizeof(Vector) / sizeof(double), kLanes = 2 * kHalf;
+    static constexpr int kHalf = sizeof(Vector) / sizeof(double), kWidth = 2 * kHalf;
     Vector a, b;
     ISOWAVE_INLINE static Two load(const double* p) {
         Two x;
@@ -54,19 +71,19 @@ struct Two {
 
 // ---- short ----------------------------------------------------------------------------------------------
 
-// out may be y: everything is read into `folded`, 2n + 5 rows of Pack::kLanes, before anything is written.
+// out may be y: everything is read into `folded`, 2n + 5 rows of Pack::kWidth, before anything is written.
 template <class Pack>
 ISOWAVE_INLINE void applyShort(const ShortMap& map, std::ptrdiff_t stride, const double* y, double* folded,
                                double* out) {
-    constexpr int kLanes = Pack::kLanes;
+    constexpr int kWidth = Pack::kWidth;
     const int n = map.n;
-    double *const u = folded, *const v = folded + (n + 3) * kLanes;
+    double *const u = folded, *const v = folded + (n + 3) * kWidth;
     for (int j = 0; j <= n + 1; ++j) {
         const Pack a = Pack::load(y + map.in[j] * stride), b = Pack::load(y + map.in[2 * n + 4 - j] * stride);
-        Pack::sum(a, b).store(u + j * kLanes);
-        Pack::difference(a, b).store(v + j * kLanes);
+        Pack::sum(a, b).store(u + j * kWidth);
+        Pack::difference(a, b).store(v + j * kWidth);
     }
-    Pack::load(y + map.in[n + 2] * stride).store(u + (n + 2) * kLanes);
+    Pack::load(y + map.in[n + 2] * stride).store(u + (n + 2) * kWidth);
 
     const double* m = map.coefficients.data();
     for (std::size_t pair = 0; pair < map.outPairs.size(); pair += 2) {
@@ -75,13 +92,13 @@ ISOWAVE_INLINE void applyShort(const ShortMap& map, std::ptrdiff_t stride, const
         Pack o0 = Pack::product(m[2], v0), o1 = Pack::product(m[3], v0);
         m += 4;
         for (int j = 1; j <= n + 1; ++j, m += 4) {
-            const Pack uj = Pack::load(u + j * kLanes), vj = Pack::load(v + j * kLanes);
+            const Pack uj = Pack::load(u + j * kWidth), vj = Pack::load(v + j * kWidth);
             e0.addProduct(m[0], uj);
             e1.addProduct(m[1], uj);
             o0.addProduct(m[2], vj);
             o1.addProduct(m[3], vj);
         }
-        const Pack middle = Pack::load(u + (n + 2) * kLanes);
+        const Pack middle = Pack::load(u + (n + 2) * kWidth);
         e0.addProduct(m[0], middle);
         e1.addProduct(m[1], middle);
         m += 2;

@@ -1,11 +1,10 @@
-// Lines of lattice points as strings of bits: the 64 lines along an axis that a column of leaves holds, one bit a
-// position. Runs, parities and signs are then operations on words, 64 positions at a time.
+// Lattice points of a leaf as bits, by lines along an axis: runs, parities and signs are operations on words.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <vector>
+#include <cstring>
 
 #include "volume/leaf_words.h"
 
@@ -16,9 +15,9 @@ static_assert(std::endian::native == std::endian::little, "bytes of a word are a
 inline constexpr int kLeafLog2 = 3, kLeafDim = 8, kLinesPerLeaf = kLeafDim * kLeafDim;
 
 using Word = std::uint64_t;
-// A leaf's bits (LeafWords) by lines: byte l holds the eight positions of line l along an axis, lowest first. Lines are numbered
-// 8 i + j, i and j the coordinates on the two other axes in ascending order.
-using LeafLines = std::array<std::uint8_t, kLinesPerLeaf>;
+// A leaf's bits (LeafWords) by lines: word i, byte j holds the eight positions of line 8i + j along an axis, lowest first;
+// i and j are the coordinates on the two other axes in ascending order.
+using LeafLines = std::array<Word, kLeafDim>;
 
 // Bit 8i + j -> bit 8j + i (Warren: Hacker's Delight, 7-3).
 constexpr Word transposed8x8(Word w) {
@@ -30,84 +29,83 @@ constexpr Word transposed8x8(Word w) {
     return w ^ t ^ (t << 28);
 }
 
-LeafLines linesOf(const LeafWords& words, int axis);
-LeafWords wordsOfLines(const LeafLines& lines, int axis);
+// Byte j of words[i] -> byte i of words[j], by halves, quarters and bytes, for kMany words side by side.
+template <std::size_t kMany>
+constexpr void transposeBytes(std::array<std::array<Word, kMany>, 8>& words) {
+    constexpr Word kMasks[] = {0x00000000FFFFFFFFULL, 0x0000FFFF0000FFFFULL, 0x00FF00FF00FF00FFULL};
+    int stage = 0;
+    for (std::size_t apart = 4; apart != 0; apart /= 2, ++stage)
+        for (std::size_t i = 0; i < 8; ++i)
+            if ((i & apart) == 0)
+                for (std::size_t m = 0; m < kMany; ++m) {
+                    Word &a = words[i][m], &b = words[i + apart][m];
+                    const Word t = (a >> 8 * apart ^ b) & kMasks[stage];
+                    b ^= t;
+                    a ^= t << 8 * apart;
+                }
+}
+
+// z: word x is bytes y already. y: each word transposed. x: byte y of the eight words, side by side and transposed, is the
+// eight lines of that y.
+constexpr LeafLines linesOf(const LeafWords& words, int axis) {
+    if (axis == 2) return words;
+    LeafLines lines{};
+    if (axis == 0) {
+        std::array<std::array<Word, 1>, 8> bytes{};
+        for (int x = 0; x < kLeafDim; ++x) bytes[x][0] = words[x];
+        transposeBytes(bytes);
+        for (int y = 0; y < kLeafDim; ++y) lines[y] = bytes[y][0];
+    } else {
+        lines = words;
+    }
+    for (Word& w : lines) w = transposed8x8(w);
+    return lines;
+}
+constexpr LeafWords wordsOfLines(const LeafLines& lines, int axis) {
+    if (axis == 2) return lines;
+    LeafWords words = lines;
+    for (Word& w : words) w = transposed8x8(w);
+    if (axis == 1) return words;
+    std::array<std::array<Word, 1>, 8> bytes{};
+    for (int y = 0; y < kLeafDim; ++y) bytes[y][0] = words[y];
+    transposeBytes(bytes);
+    for (int x = 0; x < kLeafDim; ++x) words[x] = bytes[x][0];
+    return words;
+}
 
 // Bits 0, 2, 4, ... of a word, packed.
-constexpr std::uint32_t evenBits(Word w) {
+constexpr Word evenBits(Word w) {
     w &= 0x5555555555555555ULL;
     w = (w | w >> 1) & 0x3333333333333333ULL;
     w = (w | w >> 2) & 0x0F0F0F0F0F0F0F0FULL;
     w = (w | w >> 4) & 0x00FF00FF00FF00FFULL;
     w = (w | w >> 8) & 0x0000FFFF0000FFFFULL;
-    return static_cast<std::uint32_t>(w | w >> 16);
+    return (w | w >> 16) & 0x00000000FFFFFFFFULL;
 }
 
-// 64 lines of leaves 0 .. leafCount - 1, positions 0 .. 8 leafCount - 1.
-class LineBits {
-  public:
-    // All bits 0. Keeps its memory.
-    void reset(int leafCount) {
-        wordCount_ = (leafCount + kLeafDim - 1) / kLeafDim;
-        words_.assign(std::size_t(wordCount_) * kLinesPerLeaf, 0);
-    }
-    int wordCount() const { return wordCount_; }
-    Word* line(int l) { return words_.data() + std::ptrdiff_t(l) * wordCount_; }
-    const Word* line(int l) const { return words_.data() + std::ptrdiff_t(l) * wordCount_; }
-
-    bool at(int l, int position) const { return line(l)[position >> 6] >> (position & 63) & 1; }
-    // Sets first .. last.
-    void set(int l, int first, int last) {
-        Word* w = line(l);
-        const Word from = ~Word{0} << (first & 63), to = ~Word{0} >> (63 - (last & 63));
-        if (first >> 6 == last >> 6) {
-            w[first >> 6] |= from & to;
-            return;
+// The even positions along an axis of two leaves, one behind the other: those of a leaf half as long.
+constexpr LeafWords evenPositions(const LeafWords& low, const LeafWords& high, int axis) {
+    LeafWords even{};
+    constexpr int kHalf = kLeafDim / 2;
+    for (int x = 0; x < kLeafDim; ++x)
+        if (axis == 0) {
+            even[x] = x < kHalf ? low[2 * x] : high[2 * (x - kHalf)];
+        } else if (axis == 1) {
+            const auto evenBytes = [](Word w) {
+                w &= 0x00FF00FF00FF00FFULL;
+                w = (w | w >> 8) & 0x0000FFFF0000FFFFULL;
+                return (w | w >> 16) & 0x00000000FFFFFFFFULL;
+            };
+            even[x] = evenBytes(low[x]) | evenBytes(high[x]) << 32;
+        } else {
+            const auto evenOfBytes = [](Word w) {
+                w &= 0x5555555555555555ULL;
+                w = (w | w >> 1) & 0x3333333333333333ULL;
+                return (w | w >> 2) & 0x0F0F0F0F0F0F0F0FULL;
+            };
+            even[x] = evenOfBytes(low[x]) | evenOfBytes(high[x]) << 4;
         }
-        w[first >> 6] |= from;
-        for (int i = (first >> 6) + 1; i < last >> 6; ++i) w[i] = ~Word{0};
-        w[last >> 6] |= to;
-    }
-    // Calls f(first, last) for every maximal run of ones. REQUIRES: the last position is 0.
-    template <class F>
-    void forEachRun(int l, const F& f) const {
-        const Word* w = line(l);
-        Word carry = 0;
-        int first = -1;
-        for (int i = 0; i < wordCount_; ++i) {
-            // Ones where a run starts and one behind where it ends.
-            Word edges = w[i] ^ (w[i] << 1 | carry);
-            carry = w[i] >> 63;
-            for (; edges != 0; edges &= edges - 1) {
-                const int at = 64 * i + std::countr_zero(edges);
-                if (first < 0) {
-                    first = at;
-                } else {
-                    f(first, at - 1);
-                    first = -1;
-                }
-            }
-        }
-    }
-
-    void putLeaf(int leaf, const LeafLines& lines) {
-        for (int l = 0; l < kLinesPerLeaf; ++l) bytes(l)[leaf] = lines[l];
-    }
-    LeafLines leaf(int leaf) const {
-        LeafLines lines;
-        for (int l = 0; l < kLinesPerLeaf; ++l) lines[l] = bytes(l)[leaf];
-        return lines;
-    }
-    void fillLeaf(int leaf, bool value) {
-        for (int l = 0; l < kLinesPerLeaf; ++l) bytes(l)[leaf] = value ? 0xFF : 0;
-    }
-
-  private:
-    std::uint8_t* bytes(int l) { return reinterpret_cast<std::uint8_t*>(line(l)); }
-    const std::uint8_t* bytes(int l) const { return reinterpret_cast<const std::uint8_t*>(line(l)); }
-
-    int wordCount_ = 0;
-    std::vector<Word> words_;
-};
+    return even;
+}
 
 }  // namespace isowave::wavelets

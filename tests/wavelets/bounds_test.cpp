@@ -56,26 +56,33 @@ TEST(Bounds, NoIntervalMovesMoreThanTheTwoGains) {
 }
 
 TEST(Bounds, TheGainOfABatchIsThatOfTheAbsoluteMap) {
-    constexpr int kLanes = IntervalBatch::kLanes;
     std::mt19937 random(3);
-    IntervalBatch batch;
+    BatchTransform transform;
     for (const int n : {1, 2, 3, 5, 11, 12, 13, 14, 20, 47, 60, 90}) {
         const Matrix map = synthesisMap(n);
-        batch.start(n, kLanes);
         std::vector<double> y(2 * n + 3);  // c, d: no lane but the last moves
         for (double& x : y) x = static_cast<double>(random() % 1000) / 1000;
-        std::fill_n(batch.rows(), (2 * n + 5) * kLanes, 0.0f);
-        std::fill_n(batch.left(), 2 * kLanes, 1.0f);
-        const auto at = [&](int row) -> float& { return batch.rows()[row * kLanes + kLanes - 1]; };
+        std::vector<float> coarse(n + 3 + kSlack), detail(n + kSlack), still(n + 3 + kSlack),
+            fine(2 * n + 3 + kSlack), stillFine(fine);
         for (int j = 0; j < n + 3; ++j)
-            at(2 * j) = static_cast<float>(j & 1 ? y[j] : -y[j]);  // whatever the sign
-        for (int k = 0; k < n; ++k) at(2 * k + 3) = static_cast<float>(y[n + 3 + k]);
-        batch.gain();
+            coarse[j] = static_cast<float>(j & 1 ? y[j] : -y[j]);  // whatever the sign
+        for (int k = 0; k < n; ++k) detail[k] = static_cast<float>(y[n + 3 + k]);
+        SynthesisBatch batch;
+        batch.n = n;
+        batch.lanes = kLanes;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const bool moves = lane == kLanes - 1;
+            batch.coarse[lane] = moves ? coarse.data() : still.data();
+            batch.detail[lane] = moves ? detail.data() : still.data();
+            batch.left[lane] = batch.right[lane] = 1;
+            batch.fine[lane] = moves ? fine.data() : stillFine.data();
+        }
+        transform.gain(batch);
         for (int i = 0; i < 2 * n + 3; ++i) {
             Real sum = 0;
             for (int j = 0; j < 2 * n + 3; ++j) sum += std::abs(map(i, 1 + j)) * y[j];
-            ASSERT_NEAR(at(1 + i), static_cast<double>(sum), 1e-6) << n << ' ' << i;
-            ASSERT_EQ(batch.rows()[(1 + i) * kLanes], 0) << n << ' ' << i;
+            ASSERT_NEAR(fine[i], static_cast<double>(sum), 1e-6) << n << ' ' << i;
+            ASSERT_EQ(stillFine[i], 0) << n << ' ' << i;
         }
     }
 }

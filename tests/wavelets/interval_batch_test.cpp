@@ -1,4 +1,4 @@
-// The promises of wavelets/interval_batch.h and line_bits.h.
+// The promises of wavelets/interval_batch.h, for every width of vectors that this machine has.
 #include "wavelets/interval_batch.h"
 
 #include <gtest/gtest.h>
@@ -8,13 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "vector_widths.h"
 #include "wavelets/interval.h"
-#include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {
 namespace {
-
-constexpr int kLanes = IntervalBatch::kLanes;
 
 struct Line {
     std::vector<double> fine;
@@ -28,67 +26,127 @@ Line randomLine(int n, std::mt19937& rng) {
     return line;
 }
 
-void put(IntervalBatch& batch, int lane, int row, double value) {
-    batch.rows()[row * kLanes + lane] = static_cast<float>(value);
-}
-float get(IntervalBatch& batch, int lane, int row) { return batch.rows()[row * kLanes + lane]; }
+constexpr float kGuard = 12345;  // what lies behind a line
+
+// Room for the fine values of each lane with their accessory ones, and for its coefficients; every line with what may be
+// read behind it.
+struct Lanes {
+    std::vector<float> fine[kLanes], coarse[kLanes], detail[kLanes];
+    AnalysisBatch analysis;
+    SynthesisBatch synthesis;
+
+    Lanes(int n, int lanes) {
+        analysis.n = synthesis.n = n;
+        analysis.lanes = synthesis.lanes = lanes;
+        for (int lane = 0; lane < lanes; ++lane) {
+            fine[lane].assign(2 * n + 5 + kSlack, kGuard);
+            coarse[lane].assign(n + 3 + kSlack, kGuard);
+            detail[lane].assign(n + kSlack, kGuard);
+            analysis.fine[lane] = fine[lane].data();
+            synthesis.fine[lane] = fine[lane].data() + 1;
+            synthesis.coarse[lane] = analysis.coarse[lane] = coarse[lane].data();
+            synthesis.detail[lane] = analysis.detail[lane] = detail[lane].data();
+        }
+    }
+    void expectGuards() const {
+        for (int lane = 0; lane < analysis.lanes; ++lane)
+            for (int i = 1; i <= kSlack; ++i) {
+                EXPECT_EQ(fine[lane].end()[-i], kGuard);
+                EXPECT_EQ(coarse[lane].end()[-i], kGuard);
+                EXPECT_EQ(detail[lane].end()[-i], kGuard);
+            }
+    }
+    void putFine(int lane, const Line& line) {
+        fine[lane][0] = line.left;
+        for (std::size_t j = 0; j < line.fine.size(); ++j)
+            fine[lane][1 + j] = static_cast<float>(line.fine[j]);
+        fine[lane][1 + line.fine.size()] = line.right;
+    }
+};
 
 // 12 and 13: the last short length and the first banded one; 60 and 61: the last with factors of its own.
-const int kLengths[] = {1, 2, 3, 4, 5, 8, 11, 12, 13, 14, 20, 33, 59, 60, 61, 62, 75, 200};
+const int kLengths[] = {1, 2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 20, 33, 59, 60, 61, 62, 75, 200};
 
-TEST(IntervalBatch, EveryLaneIsWhatOneIntervalGivesToTheBit) {
+class IntervalBatch : public testing::TestWithParam<Vectors> {};
+INSTANTIATE_TEST_SUITE_P(Widths, IntervalBatch, testing::ValuesIn(vectorWidths()), vectorsName);
+
+TEST_P(IntervalBatch, EveryLaneIsWhatOneIntervalGivesToTheBit) {
     std::mt19937 rng(1);
-    IntervalBatch batch;
+    BatchTransform transform(GetParam());
     for (const int n : kLengths)
-        for (const int lanes : {kLanes, 3, 1}) {
+        for (const int lanes : {kLanes, 5, 3, 1}) {
             std::vector<Line> lines;
             for (int lane = 0; lane < lanes; ++lane) lines.push_back(randomLine(n, rng));
-            batch.start(n, lanes);
-            for (int lane = 0; lane < lanes; ++lane) {
-                put(batch, lane, 0, lines[lane].left);
-                for (int j = 0; j < 2 * n + 3; ++j) put(batch, lane, 1 + j, lines[lane].fine[j]);
-                put(batch, lane, 2 * n + 4, lines[lane].right);
-            }
-            batch.analyse();
+            Lanes room(n, lanes);
+            for (int lane = 0; lane < lanes; ++lane) room.putFine(lane, lines[lane]);
+            transform.analyse(room.analysis);
             for (int lane = 0; lane < lanes; ++lane) {
                 std::vector<double> coarse(n + 3), detail(n);
                 const Line& line = lines[lane];
                 IntervalTransform().analyse(line.fine, line.left, line.right, coarse, detail);
                 for (int j = 0; j < n + 3; ++j)
-                    ASSERT_EQ(get(batch, lane, 2 * j), static_cast<float>(coarse[j])) << n << " " << j;
+                    ASSERT_EQ(room.coarse[lane][j], static_cast<float>(coarse[j])) << n << " " << j;
                 for (int k = 0; k < n; ++k)
-                    ASSERT_EQ(get(batch, lane, 2 * k + 3), static_cast<float>(detail[k])) << n << " " << k;
+                    ASSERT_EQ(room.detail[lane][k], static_cast<float>(detail[k])) << n << " " << k;
             }
+            room.expectGuards();
         }
 }
 
-TEST(IntervalBatch, SynthesisOfEveryLaneIsWhatOneIntervalGivesToTheBit) {
+TEST_P(IntervalBatch, SynthesisOfEveryLaneIsWhatOneIntervalGivesToTheBit) {
     std::mt19937 rng(2);
-    IntervalBatch batch;
-    for (const int n : kLengths) {
-        std::vector<Line> lines;  // fine: any coefficients, c and d one behind the other
-        for (int lane = 0; lane < kLanes; ++lane) lines.push_back(randomLine(n, rng));
-        batch.start(n, kLanes);
-        for (int lane = 0; lane < kLanes; ++lane) {
-            for (int j = 0; j < n + 3; ++j) put(batch, lane, 2 * j, lines[lane].fine[j]);
-            for (int k = 0; k < n; ++k) put(batch, lane, 2 * k + 3, lines[lane].fine[n + 3 + k]);
-            batch.left()[lane] = lines[lane].left;
-            batch.right()[lane] = lines[lane].right;
+    BatchTransform transform(GetParam());
+    for (const int n : kLengths)
+        for (const int lanes : {kLanes, 2}) {
+            std::vector<Line> lines;  // fine: any coefficients, c and d one behind the other
+            for (int lane = 0; lane < lanes; ++lane) lines.push_back(randomLine(n, rng));
+            Lanes room(n, lanes);
+            for (int lane = 0; lane < lanes; ++lane) {
+                for (int j = 0; j < n + 3; ++j)
+                    room.coarse[lane][j] = static_cast<float>(lines[lane].fine[j]);
+                for (int k = 0; k < n; ++k)
+                    room.detail[lane][k] = static_cast<float>(lines[lane].fine[n + 3 + k]);
+                room.synthesis.left[lane] = lines[lane].left;
+                room.synthesis.right[lane] = lines[lane].right;
+            }
+            transform.synthesise(room.synthesis);
+            for (int lane = 0; lane < lanes; ++lane) {
+                const Line& line = lines[lane];
+                const std::span coefficients(line.fine);
+                std::vector<double> fine(2 * n + 3);
+                IntervalTransform().synthesise(coefficients.first(n + 3), coefficients.subspan(n + 3),
+                                               line.left, line.right, fine);
+                for (int j = 0; j < 2 * n + 3; ++j)
+                    ASSERT_EQ(room.fine[lane][1 + j], static_cast<float>(fine[j])) << n << " " << j;
+                EXPECT_EQ(room.fine[lane][0], kGuard);
+                EXPECT_EQ(room.fine[lane][2 * n + 4], kGuard);
+            }
+            room.expectGuards();
         }
-        batch.synthesise();
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const Line& line = lines[lane];
-            const std::span coefficients(line.fine);
-            std::vector<double> fine(2 * n + 3);
-            IntervalTransform().synthesise(coefficients.first(n + 3), coefficients.subspan(n + 3), line.left,
-                                           line.right, fine);
-            for (int j = 0; j < 2 * n + 3; ++j)
-                ASSERT_EQ(get(batch, lane, 1 + j), static_cast<float>(fine[j])) << n << " " << j;
-        }
-    }
 }
 
-TEST(IntervalBatch, AMirroredIntervalGivesMirroredResultsToTheBitWhereItIsShort) {
+TEST_P(IntervalBatch, WhatALaneHeldBeforeDoesNotMatter) {
+    std::mt19937 rng(4);
+    BatchTransform used(GetParam()), fresh(GetParam());
+    for (int n = 40; n >= 1; --n) {  // leaves values behind the rows of the shorter ones
+        Lanes room(n, kLanes);
+        for (auto& line : room.fine) std::fill(line.begin(), line.end(), 1e30f);
+        used.analyse(room.analysis);
+    }
+    const Line line = randomLine(20, rng);
+    std::vector<std::vector<float>> results;
+    for (BatchTransform* transform : {&used, &fresh}) {
+        Lanes room(20, 1);
+        room.putFine(0, line);
+        transform->analyse(room.analysis);
+        results.push_back(room.coarse[0]);
+        results.push_back(room.detail[0]);
+    }
+    EXPECT_EQ(results[0], results[2]);
+    EXPECT_EQ(results[1], results[3]);
+}
+
+TEST(IntervalTransform, AMirroredIntervalGivesMirroredResultsToTheBitWhereItIsShort) {
     std::mt19937 rng(3);
     for (int n = 1; n <= 12; ++n) {
         Line line = randomLine(n, rng);
@@ -98,79 +156,6 @@ TEST(IntervalBatch, AMirroredIntervalGivesMirroredResultsToTheBitWhereItIsShort)
         IntervalTransform().analyse(mirrored, line.right, line.left, mirroredCoarse, mirroredDetail);
         EXPECT_EQ(coarse, std::vector<double>(mirroredCoarse.rbegin(), mirroredCoarse.rend())) << n;
         EXPECT_EQ(detail, std::vector<double>(mirroredDetail.rbegin(), mirroredDetail.rend())) << n;
-    }
-}
-
-TEST(IntervalBatch, WhatALaneHeldBeforeDoesNotMatter) {
-    std::mt19937 rng(4);
-    IntervalBatch used, fresh;
-    for (int n = 40; n >= 1; --n) {  // leaves values behind the rows of the shorter ones
-        used.start(n, kLanes);
-        std::fill_n(used.rows(), (2 * n + 5) * kLanes, 1e30f);
-        used.analyse();
-    }
-    const Line line = randomLine(20, rng);
-    for (IntervalBatch* batch : {&used, &fresh}) {
-        batch->start(20, 1);
-        for (int j = 0; j < 43; ++j) put(*batch, 0, 1 + j, line.fine[j]);
-        batch->analyse();
-    }
-    for (int row = 0; row <= 44; row += 2) EXPECT_EQ(get(used, 0, row), get(fresh, 0, row)) << row;
-}
-
-// ---- bits -----------------------------------------------------------------------------------------------
-
-bool bitOf(const LeafWords& words, int x, int y, int z) { return words[x] >> (8 * y + z) & 1; }
-
-TEST(LineBits, LinesOfALeafAreItsBitsAlongEachAxisAndComeBack) {
-    std::mt19937_64 rng(5);
-    for (int axis = 0; axis < 3; ++axis) {
-        LeafWords words;
-        for (Word& w : words) w = rng();
-        const LeafLines lines = linesOf(words, axis);
-        for (int i = 0; i < 8; ++i)
-            for (int j = 0; j < 8; ++j)
-                for (int at = 0; at < 8; ++at) {
-                    const bool bit = axis == 0   ? bitOf(words, at, i, j)
-                                     : axis == 1 ? bitOf(words, i, at, j)
-                                                 : bitOf(words, i, j, at);
-                    ASSERT_EQ(lines[8 * i + j] >> at & 1, bit) << axis;
-                }
-        EXPECT_EQ(wordsOfLines(lines, axis), words);
-    }
-}
-
-TEST(LineBits, RunsAreFoundWhereverTheyLie) {
-    std::mt19937 rng(6);
-    for (int trial = 0; trial < 200; ++trial) {
-        const int leaves = 2 + trial % 40, positions = 8 * leaves;
-        LineBits bits;
-        bits.reset(leaves);
-        std::vector<bool> expected(positions);
-        for (int i = 0; i < 10; ++i) {
-            const int first = static_cast<int>(rng() % (positions - 1));
-            const int last = std::min<int>(positions - 2, first + static_cast<int>(rng() % 100));
-            bits.set(17, first, std::max(first, last));
-            for (int p = first; p <= std::max(first, last); ++p) expected[p] = true;
-        }
-        expected[positions - 1] = false;
-        std::vector<bool> found(positions);
-        int before = -2;
-        bits.forEachRun(17, [&](int first, int last) {
-            ASSERT_GT(first, before + 1) << "runs are maximal";
-            for (int p = first; p <= last; ++p) found[p] = true;
-            before = last;
-        });
-        EXPECT_EQ(found, expected);
-        bits.forEachRun(16, [](int, int) { FAIL() << "another line"; });
-    }
-}
-
-TEST(LineBits, EvenBitsAreEveryOtherOne) {
-    std::mt19937_64 rng(7);
-    for (int trial = 0; trial < 50; ++trial) {
-        const Word w = rng();
-        for (int i = 0; i < 32; ++i) ASSERT_EQ(evenBits(w) >> i & 1, w >> 2 * i & 1);
     }
 }
 

@@ -1,0 +1,68 @@
+// A column of leaves at work: its lines' intervals, and the values that they are gathered into.
+//
+// Positions within a column are counted from the first fine leaf of an even index that lies at least one leaf before
+// the column's first, so that coarse position = fine position / 2 and accessory points have a place.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "volume/leaf_words.h"
+#include "volume/vdb.h"
+#include "wavelets/columns.h"
+#include "wavelets/line_plan.h"
+#include "wavelets/line_values.h"
+
+namespace isowave::wavelets {
+
+using BoolLeaf = openvdb::BoolTree::LeafNodeType;
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+// Not registered with their trees, which costs more than what they are used for; trees do not change while they live.
+using ShapeAccessor = openvdb::tree::ValueAccessor<const openvdb::BoolTree, false>;
+using ValueAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
+
+// Its memory is kept from one column to the next.
+class ColumnLines {
+  public:
+    // Which leaves there are; they are not looked at. REQUIRES: `column` outlives the calls below.
+    void look(const Column& column, int axis);
+    // Throws InputError where a run is shorter than four points.
+    void plan(const ShapeAccessor& shape);
+
+    // Calls f(line, first, n) for each interval: position of its first fine control point and number of coarse intervals.
+    template <class F>
+    void forEachInterval(const F& f) const {
+        plan_.forEachInterval([&](const LineRun& i) { f(i.line, i.first, (i.last - i.first - 2) / 2); });
+    }
+
+    int fineLeafCount() const { return static_cast<int>(fineLeaves_.size()); }
+    int coarseLeafCount() const { return fineLeafCount() / 2; }
+    openvdb::Coord fineOrigin(int k) const { return column_->origin(axis_, firstLeaf_ + k); }
+    openvdb::Coord coarseOrigin(int k) const { return column_->origin(axis_, firstLeaf_ / 2 + k); }
+
+    const BoolLeaf* fineLeaf(int k) const { return fineLeaves_[k]; }  // null: none
+    LeafWords fineInside(int k) const;
+    bool inside(int line, int position) const;
+
+    // By leaf of the coarse column; bits in a leaf's order.
+    bool knowsAny(int k) const;
+    LeafWords coarseKnown(int k) const { return wordsOfLines(plan_.coarseKnown(k), axis_); }
+    LeafWords stored(int k) const { return wordsOfLines(plan_.stored(k), axis_); }
+    // The signs of a coarse column are those of the even fine positions.
+    LeafWords coarseInside(int k) const {
+        return evenPositions(fineInside(2 * k), fineInside(2 * k + 1), axis_);
+    }
+
+    LineValues fine, coarse, detail;
+
+  private:
+    const Column* column_ = nullptr;
+    int axis_ = 0;
+    std::int64_t firstLeaf_ = 0;
+    std::vector<const BoolLeaf*> fineLeaves_;  // an even number
+    std::vector<bool> insideWithoutLeaf_;
+    std::vector<LeafLines> known_;
+    LinePlan plan_;
+};
+
+}  // namespace isowave::wavelets

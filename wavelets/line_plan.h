@@ -1,0 +1,105 @@
+// From what is known along the lines of a column to their intervals (interval.h) and to what the coarse step knows and
+// stores. All 64 lines at once, 64 positions a word; the algebra is that of sets of positions:
+//
+//   K   known                                        a run is a maximal row of ones
+//   J0  K, and the odd neighbours of its even ends   odd ends: both neighbours of every even point of K
+//   J   J0 closed by four in a row                   what is apart by kJoin or less is joined: gaps are 1, 3, 5, ...
+//   coarse known    2c-1, 2c or 2c+1 in J            an interval and the accessory points at its ends
+//   stored          2c and 2c+3 in J                 n details: without the first two and the last coarse point
+//   short runs      K is not K opened by four in a row
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "wavelets/interval.h"
+#include "wavelets/line_bits.h"
+#include "wavelets/vectors.h"
+
+namespace isowave::wavelets {
+
+// A line's positions first .. last.
+struct LineRun {
+    int line, first, last;
+};
+
+class LinePlan {
+  public:
+    // Tests choose narrower vectors.
+    explicit LinePlan(Vectors vectors = widestVectors()) : vectors_(vectors) {}
+
+    // known: leaf by leaf, positions 8k .. 8k + 7 in known[k]. Keeps its memory.
+    // REQUIRES: an even number of leaves, of which the first and the last know nothing.
+    void make(std::span<const LeafLines> known);
+
+    // Whether a run is shorter than four points; if so, one of them.
+    bool hasShortRun() const { return hasShortRun_; }
+    LineRun shortRun() const;
+
+    // Calls f(LineRun) for each interval, line by line, ascending.
+    template <class F>
+    void forEachInterval(const F& f) const {
+        forEachRun(joined_, f);
+    }
+
+    // Leaf k of the coarse column: positions 8k .. 8k + 7 are fine 16k, 16k + 2, ...
+    const LeafLines& coarseKnown(int k) const { return coarse_[coarseAt(k)]; }
+    const LeafLines& stored(int k) const { return coarse_[coarseAt(k) + kCoarseLeaves]; }
+
+  private:
+    // Lines in planes of 64 positions: word 64p + 8j + i is positions 64p .. 64p + 63 of line 8i + j. Plane -1 and the one
+    // behind the last are 0.
+    static constexpr int kPlaneWords = kLinesPerLeaf, kLeavesPerPlane = 8,
+                         kCoarseLeaves = kLeavesPerPlane / 2;
+    class Planes {
+      public:
+        // All 0.
+        void reset(int planes) { words_.assign(std::size_t(planes + 2) * kPlaneWords, 0); }
+        Word* plane(int p) { return words_.data() + std::ptrdiff_t(p + 1) * kPlaneWords; }
+        const Word* plane(int p) const { return words_.data() + std::ptrdiff_t(p + 1) * kPlaneWords; }
+
+      private:
+        std::vector<Word> words_;
+    };
+
+    static std::size_t coarseAt(int k) {
+        return std::size_t(k / kCoarseLeaves) * kLeavesPerPlane + k % kCoarseLeaves;
+    }
+
+    template <class F>
+    void forEachRun(const Planes& lines, const F& f) const {
+        for (int line = 0; line < kLinesPerLeaf; ++line) {
+            const Word* w = lines.plane(0) + (line % kLeafDim * kLeafDim + line / kLeafDim);
+            int first = -1;
+            Word carry = 0;
+            for (int p = 0; p < planes_; ++p, w += kPlaneWords) {
+                // Ones where a run starts and one behind where it ends.
+                Word edges = *w ^ (*w << 1 | carry);
+                carry = *w >> 63;
+                for (; edges != 0; edges &= edges - 1) {
+                    const int at = 64 * p + std::countr_zero(edges);
+                    if (first < 0) {
+                        first = at;
+                    } else {
+                        f(LineRun{line, first, at - 1});
+                        first = -1;
+                    }
+                }
+            }
+        }
+    }
+
+    void resize(int planes);
+    void makeBy();
+    void makeByFour();
+    void makeByEight();
+
+    Vectors vectors_;
+    int planes_ = 0;
+    bool hasShortRun_ = false;
+    Planes known_, joined_, dilated_, eroded_;
+    // Of each plane: four leaves of what is known, four of what is stored.
+    std::vector<LeafLines> coarse_;
+};
+
+}  // namespace isowave::wavelets

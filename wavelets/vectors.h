@@ -1,0 +1,37 @@
+// What the machine's vector instructions are, asked when the program runs: one binary serves every processor, and uses what
+// it finds. Results never depend on it.
+#pragma once
+
+namespace isowave::wavelets {
+
+// Doubles in one register: SSE2 or whatever else the compiler takes for granted; AVX2; AVX-512.
+enum class Vectors { two, four, eight };
+
+// Functions compiled for the wider ones. Call them where widestVectors() says so.
+#if defined(__x86_64__) && defined(__GNUC__)
+#define ISOWAVE_FOUR __attribute__((target("avx2")))
+#define ISOWAVE_EIGHT \
+    __attribute__((target("avx2,avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")))
+#else
+#define ISOWAVE_FOUR
+#define ISOWAVE_EIGHT
+#endif
+
+inline Vectors widestVectors() {
+#if defined(__x86_64__) && defined(__GNUC__)
+    static const Vectors widest = [] {
+        __builtin_cpu_init();
+        if (!__builtin_cpu_supports("avx2")) return Vectors::two;
+        const bool eight = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+        return eight ? Vectors::eight : Vectors::four;
+    }();
+    return widest;
+#else
+    return Vectors::two;
+#endif
+}
+
+#define ISOWAVE_INLINE [[gnu::always_inline]] inline
+
+}  // namespace isowave::wavelets
