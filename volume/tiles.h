@@ -3,7 +3,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <set>
+#include <type_traits>
 #include <vector>
 
 #include "volume/vdb.h"
@@ -30,6 +32,78 @@ void fillTiles(Tree& tree, const MakeLookup& makeLookup) {
     tree.getNodes(upper);
     fill(lower);
     fill(upper);
+}
+
+// Nodes of a shape beside one of another tree: one, or two along an axis that the other tree has halved.
+template <class ShapeNode>
+class ShapeBeside {
+  public:
+    static constexpr int kDim = 1 << ShapeNode::LOG2DIM;
+
+    // origin: of the other tree's node. halved: 0, 1, 2; -1: none.
+    ShapeBeside(const openvdb::BoolTree& shape, openvdb::Coord origin, int halved) : halved_(halved) {
+        if (halved >= 0) origin[halved] *= 2;
+        for (int part = 0; part < (halved < 0 ? 1 : 2); ++part) {
+            nodes_[part] = shape.probeConstNode<ShapeNode>(origin);
+            tiles_[part] = !nodes_[part] && shape.getValue(origin);
+            if (halved >= 0) origin[halved] += static_cast<int>(ShapeNode::DIM);
+        }
+    }
+    bool isOutside() const { return !nodes_[0] && !nodes_[1] && !tiles_[0] && !tiles_[1]; }
+    // At the first lattice point of slot (x, y, z) of the other tree's node.
+    bool inside(std::array<int, 3> slot) const {
+        int part = 0;
+        if (halved_ >= 0) {
+            part = slot[halved_] >= kDim / 2;
+            slot[halved_] = 2 * slot[halved_] & (kDim - 1);
+        }
+        const ShapeNode* node = nodes_[part];
+        if (!node) return tiles_[part];
+        const auto n = offsetOf(slot);
+        const auto& entry = node->getTable()[n];
+        return node->getChildMask().isOn(n) ? entry.getChild()->getFirstValue() : entry.getValue();
+    }
+    static openvdb::Index offsetOf(const std::array<int, 3>& slot) {
+        return static_cast<openvdb::Index>((slot[0] << ShapeNode::LOG2DIM | slot[1]) << ShapeNode::LOG2DIM |
+                                           slot[2]);
+    }
+
+  private:
+    int halved_;
+    std::array<const ShapeNode*, 2> nodes_{};
+    std::array<bool, 2> tiles_{};
+};
+
+// Tiles of `tree` that a shape has inside, set to `inside`; the others stay what they are, the background. A lattice point of
+// `tree` is the shape's whose coordinate along `halved` (0, 1, 2; -1: none) is twice as large. Node by node: a look into a
+// table for each tile, where fillTiles() descends from the root.
+// REQUIRES: as fillTiles().
+template <class Tree>
+void fillInsideTiles(Tree& tree, const openvdb::BoolTree& shape, int halved,
+                     typename Tree::ValueType inside) {
+    const auto fill = [&](const auto& nodes, auto shapeNode) {
+        using Beside = ShapeBeside<std::remove_pointer_t<decltype(shapeNode)>>;
+        tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+            auto& node = *nodes[i];
+            const Beside beside(shape, node.origin(), halved);
+            if (beside.isOutside()) return;
+            std::array<int, 3> slot;
+            for (slot[0] = 0; slot[0] < Beside::kDim; ++slot[0])
+                for (slot[1] = 0; slot[1] < Beside::kDim; ++slot[1])
+                    for (slot[2] = 0; slot[2] < Beside::kDim; ++slot[2])
+                        if (const auto n = Beside::offsetOf(slot);
+                            beside.inside(slot) && !node.getChildMask().isOn(n))
+                            node.addTile(n, inside, false);
+        });
+    };
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    using ShapeUpper = openvdb::BoolTree::RootNodeType::ChildNodeType;
+    std::vector<typename Upper::ChildNodeType*> lower;
+    std::vector<Upper*> upper;
+    tree.getNodes(lower);
+    tree.getNodes(upper);
+    fill(lower, static_cast<typename ShapeUpper::ChildNodeType*>(nullptr));
+    fill(upper, static_cast<ShapeUpper*>(nullptr));
 }
 
 // The root's own tiles, regions of 4096^3 lattice points: wherever `from` has a child or a tile (its region's

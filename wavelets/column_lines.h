@@ -1,4 +1,4 @@
-// A column of leaves at work: its lines' intervals, and the values that they are gathered into.
+// A column of leaves at work: its lines' intervals and what is known of its points.
 //
 // Positions within a column are counted from the first fine leaf of an even index that lies at least one leaf before
 // the column's first, so that coarse position = fine position / 2 and accessory points have a place.
@@ -11,7 +11,6 @@
 #include "volume/vdb.h"
 #include "wavelets/columns.h"
 #include "wavelets/line_plan.h"
-#include "wavelets/line_values.h"
 
 namespace isowave::wavelets {
 
@@ -52,8 +51,6 @@ class ColumnLines {
     LeafWords coarseInside(int k) const {
         return evenPositions(fineInside(2 * k), fineInside(2 * k + 1), axis_);
     }
-
-    LineValues fine, coarse, detail;
 
   private:
     const Column* column_ = nullptr;

@@ -105,6 +105,7 @@ Columns::Columns(const openvdb::BoolTree& shape, int axis) {
     for (const Block& block : blocks) count += block.columns.size();
     columns_.reserve(count);
     for (Block& block : blocks) {
+        blocks_.push_back({columns_.size(), columns_.size() + block.columns.size()});
         columns_.insert(columns_.end(), block.columns.begin(), block.columns.end());
         leaves_.push_back(std::move(block.leaves));  // where they are: the columns' spans stay valid
     }

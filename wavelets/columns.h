@@ -63,9 +63,16 @@ class Columns {
     std::size_t size() const { return columns_.size(); }
     const Column& operator[](std::size_t i) const { return columns_[i]; }
 
+    // Columns begin .. end - 1.
+    struct Range {
+        std::size_t begin, end;
+    };
+    const std::vector<Range>& blocks() const { return blocks_; }
+
   private:
     std::vector<std::vector<Column::Leaf*>> leaves_;  // by block
     std::vector<Column> columns_;
+    std::vector<Range> blocks_;
 };
 
 }  // namespace isowave::wavelets

@@ -16,6 +16,7 @@
 #include "wavelets/bounds.h"
 #include "wavelets/column_lines.h"
 #include "wavelets/interval_batch.h"
+#include "wavelets/line_values.h"
 
 // Both directions of the transform run the same passes on a handful of columns at a time:
 //   plan       what is known, from the shape's masks -> intervals, and the coarse control points and details they have;
@@ -34,19 +35,13 @@ bool isEmpty(const LeafWords& words) {
     return std::all_of(words.begin(), words.end(), [](Word w) { return w == 0; });
 }
 
-// A task's leaves lie all over memory: they are asked for while the columns before them are planned. Inlined, or the compiler
-// takes such functions for ones without effect and leaves out the calls (g++ 12).
+// Leaves lie all over memory: they are asked for before they are needed. Inlined, or the compiler takes such functions for
+// ones without effect and leaves out the calls (g++ 12).
 template <class T>
 ISOWAVE_INLINE void prefetch(const T* begin, std::size_t count) {
     constexpr std::size_t kCacheLine = 64;
     const char* at = reinterpret_cast<const char*>(begin);
     for (const char* end = at + count * sizeof(T); at < end; at += kCacheLine) __builtin_prefetch(at);
-}
-
-ISOWAVE_INLINE void prefetchShape(const Columns& columns, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-        for (const BoolLeaf* leaf : columns[i].leaves)
-            if (leaf) prefetch(leaf, 1);
 }
 
 // Values are to be written.
@@ -65,12 +60,12 @@ std::unique_ptr<BoolLeaf> makeShapeLeaf(const openvdb::Coord& origin, const Leaf
     return leaf;
 }
 
-// What one column becomes.
-struct CoarseColumn {
+// What some columns become.
+struct CoarseColumns {
     std::vector<std::unique_ptr<FloatLeaf>> controlPoints, details;
     std::vector<std::unique_ptr<BoolLeaf>> shape;
 };
-using FineColumn = std::vector<std::unique_ptr<FloatLeaf>>;
+using FineColumns = std::vector<std::unique_ptr<FloatLeaf>>;
 
 // Values to be gathered from leaf k of a column, or scattered to it.
 struct Source {
@@ -88,6 +83,7 @@ struct Sink {
 
 struct ColumnAtWork {
     ColumnLines lines;
+    LineValues fine, coarse, detail;
     std::vector<Source> fineSources, coarseSources, detailSources;
     std::vector<Sink> fineSinks, coarseSinks, detailSinks;
 };
@@ -142,21 +138,24 @@ class WaitingRoom {
     std::vector<int> taken_;
 };
 
-// A task's columns, with the scratch of one thread.
-class Task {
-  public:
+// The scratch of one thread.
+struct Scratch {
     BatchTransform transform;
     WaitingRoom<AnalysisBatch> analyses;
     WaitingRoom<SynthesisBatch> syntheses;
+    std::vector<ColumnAtWork> columns;
 
-    std::span<ColumnAtWork> columns(std::size_t count) {
-        if (columns_.size() < count) columns_.resize(count);
-        return std::span(columns_).first(count);
+    std::span<ColumnAtWork> take(std::size_t count) {
+        if (columns.size() < count) columns.resize(count);
+        return std::span(columns).first(count);
     }
-
-  private:
-    std::vector<ColumnAtWork> columns_;
 };
+
+ISOWAVE_INLINE void lookAt(const Column& found, int axis, ColumnAtWork& column) {
+    column.lines.look(found, axis);
+    for (const BoolLeaf* leaf : found.leaves)
+        if (leaf) prefetch(leaf, 1);
+}
 
 // ---- analysis of some columns ---------------------------------------------------------------------------
 
@@ -173,16 +172,16 @@ void findFine(const ValueAccessor& controlPoints, ColumnAtWork& column) {
 }
 
 void gatherFine(int axis, float K, ColumnAtWork& column) {
-    ColumnLines& lines = column.lines;
-    lines.fine.reset(lines.fineLeafCount());
+    const ColumnLines& lines = column.lines;
+    column.fine.reset(lines.fineLeafCount());
     for (const Source& s : column.fineSources)
         if (s.leaf)
-            lines.fine.putLeaf(s.k, axis, s.values());
+            column.fine.putLeaf(s.k, axis, s.values());
         else
-            lines.fine.fillLeaf(s.k, lines.inside(0, s.k * kLeafDim) ? -K : K);
+            column.fine.fillLeaf(s.k, lines.inside(0, s.k * kLeafDim) ? -K : K);
 }
 
-void makeCoarseLeaves(ColumnAtWork& column, CoarseColumn& out) {
+void makeCoarseLeaves(ColumnAtWork& column, CoarseColumns& out) {
     const ColumnLines& lines = column.lines;
     column.coarseSinks.clear();
     column.detailSinks.clear();
@@ -200,45 +199,41 @@ void makeCoarseLeaves(ColumnAtWork& column, CoarseColumn& out) {
     }
 }
 
-void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& columns, std::size_t begin,
-                    std::size_t end, Task& task, std::vector<CoarseColumn>& made) {
+void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& columns, Columns::Range range,
+                    Scratch& scratch, CoarseColumns& made) {
     const ShapeAccessor shape(fine.shape->tree());
     const ValueAccessor controlPoints(fine.controlPoints->tree());
-    prefetchShape(columns, begin, end);
-    const auto atWork = task.columns(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-        ColumnAtWork& column = atWork[i - begin];
-        column.lines.look(columns[i], axis);
-        findFine(controlPoints, column);
+    const auto atWork = scratch.take(range.end - range.begin);
+    for (std::size_t i = 0; i < atWork.size(); ++i) {
+        lookAt(columns[range.begin + i], axis, atWork[i]);
+        findFine(controlPoints, atWork[i]);
     }
-    for (std::size_t i = begin; i < end; ++i) {
-        ColumnAtWork& column = atWork[i - begin];
+    for (ColumnAtWork& column : atWork) {
         column.lines.plan(shape);
         prefetchValues(column.fineSources);
-        makeCoarseLeaves(column, made[i]);
+        makeCoarseLeaves(column, made);
     }
     for (ColumnAtWork& column : atWork) gatherFine(axis, K, column);
-    const auto run = [&](const AnalysisBatch& batch) { task.transform.analyse(batch); };
+    const auto run = [&](const AnalysisBatch& batch) { scratch.transform.analyse(batch); };
     for (ColumnAtWork& column : atWork) {
-        ColumnLines& lines = column.lines;
-        lines.coarse.reset(lines.coarseLeafCount());
-        lines.detail.reset(lines.coarseLeafCount());
-        lines.forEachInterval([&](int line, int first, int n) {
+        column.coarse.reset(column.lines.coarseLeafCount());
+        column.detail.reset(column.lines.coarseLeafCount());
+        column.lines.forEachInterval([&](int line, int first, int n) {
             const int firstCoarse = (first - 1) / 2;  // exact: first is odd
-            task.analyses.add(
+            scratch.analyses.add(
                 n,
                 [&](AnalysisBatch& batch, int lane) {
-                    batch.fine[lane] = lines.fine.line(line) + first - 1;
-                    batch.coarse[lane] = lines.coarse.line(line) + firstCoarse;
-                    batch.detail[lane] = lines.detail.line(line) + firstCoarse + 1;
+                    batch.fine[lane] = column.fine.line(line) + first - 1;
+                    batch.coarse[lane] = column.coarse.line(line) + firstCoarse;
+                    batch.detail[lane] = column.detail.line(line) + firstCoarse + 1;
                 },
                 run);
         });
     }
-    task.analyses.runAll(run);
+    scratch.analyses.runAll(run);
     for (const ColumnAtWork& column : atWork) {
-        scatter(column.lines.coarse, axis, K, column.coarseSinks);
-        scatter(column.lines.detail, axis, 0, column.detailSinks);
+        scatter(column.coarse, axis, K, column.coarseSinks);
+        scatter(column.detail, axis, 0, column.detailSinks);
     }
 }
 
@@ -269,7 +264,7 @@ void findCoarse(const ValueAccessor& tree, const ColumnLines& lines,
     }
 }
 
-void makeFineLeaves(ColumnAtWork& column, FineColumn& out) {
+void makeFineLeaves(ColumnAtWork& column, FineColumns& out) {
     column.fineSinks.clear();
     for (int k = 0; k < column.lines.fineLeafCount(); ++k)
         if (const BoolLeaf* leaf = column.lines.fineLeaf(k)) {
@@ -283,77 +278,117 @@ void makeFineLeaves(ColumnAtWork& column, FineColumn& out) {
 using ToFine = void (BatchTransform::*)(const SynthesisBatch&);
 
 void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
-                       int axis, float K, ToFine toFine, const Columns& columns, std::size_t begin,
-                       std::size_t end, Task& task, std::vector<FineColumn>& made) {
+                       int axis, float K, ToFine toFine, const Columns& columns, Columns::Range range,
+                       Scratch& scratch, FineColumns& made) {
     const ShapeAccessor shape(fineShape.tree());
     const ValueAccessor controlPoints(coarse.controlPoints->tree()), detailTree(details.tree());
-    prefetchShape(columns, begin, end);
-    const auto atWork = task.columns(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-        ColumnAtWork& column = atWork[i - begin];
-        column.lines.look(columns[i], axis);
+    const auto atWork = scratch.take(range.end - range.begin);
+    for (std::size_t i = 0; i < atWork.size(); ++i) lookAt(columns[range.begin + i], axis, atWork[i]);
+    for (ColumnAtWork& column : atWork) {
         column.lines.plan(shape);
         findCoarse(controlPoints, column.lines, &ColumnLines::coarseKnown, "control point",
                    column.coarseSources);
         findCoarse(detailTree, column.lines, &ColumnLines::stored, "detail", column.detailSources);
         prefetchValues(column.coarseSources);
         prefetchValues(column.detailSources);
-        makeFineLeaves(column, made[i]);
+        makeFineLeaves(column, made);
     }
     for (ColumnAtWork& column : atWork) {
-        ColumnLines& lines = column.lines;
-        lines.coarse.reset(lines.coarseLeafCount());
-        lines.detail.reset(lines.coarseLeafCount());
-        gather(column.coarseSources, axis, lines.coarse);
-        gather(column.detailSources, axis, lines.detail);
+        column.coarse.reset(column.lines.coarseLeafCount());
+        column.detail.reset(column.lines.coarseLeafCount());
+        gather(column.coarseSources, axis, column.coarse);
+        gather(column.detailSources, axis, column.detail);
     }
-    const auto run = [&](const SynthesisBatch& batch) { (task.transform.*toFine)(batch); };
+    const auto run = [&](const SynthesisBatch& batch) { (scratch.transform.*toFine)(batch); };
     for (ColumnAtWork& column : atWork) {
-        ColumnLines& lines = column.lines;
-        lines.fine.reset(lines.fineLeafCount());
+        const ColumnLines& lines = column.lines;
+        column.fine.reset(lines.fineLeafCount());
         lines.forEachInterval([&](int line, int first, int n) {
             const int firstCoarse = (first - 1) / 2, after = first + 2 * n + 3;
-            task.syntheses.add(
+            scratch.syntheses.add(
                 n,
                 [&](SynthesisBatch& batch, int lane) {
-                    batch.coarse[lane] = lines.coarse.line(line) + firstCoarse;
-                    batch.detail[lane] = lines.detail.line(line) + firstCoarse + 1;
+                    batch.coarse[lane] = column.coarse.line(line) + firstCoarse;
+                    batch.detail[lane] = column.detail.line(line) + firstCoarse + 1;
                     batch.left[lane] = lines.inside(line, first - 1) ? -K : K;
                     batch.right[lane] = lines.inside(line, after) ? -K : K;
-                    batch.fine[lane] = lines.fine.line(line) + first;
+                    batch.fine[lane] = column.fine.line(line) + first;
                 },
                 run);
         });
     }
-    task.syntheses.runAll(run);
-    for (const ColumnAtWork& column : atWork) scatter(column.lines.fine, axis, K, column.fineSinks);
+    scratch.syntheses.runAll(run);
+    for (const ColumnAtWork& column : atWork) scatter(column.fine, axis, K, column.fineSinks);
 }
 
 // ---- columns in parallel --------------------------------------------------------------------------------
 
-// Calls work(begin, end, task) for ranges of columns: several at a time, so that batches fill up, but enough tasks for
-// the threads to share. Results do not depend on where the ranges end.
-template <class Work>
-void forEachTask(std::size_t columnCount, const Progress& progress, const Work& work) {
-    constexpr std::size_t kMostColumns = 4, kTasks = 32;
-    const std::size_t grain = std::clamp<std::size_t>(columnCount / kTasks, 1, kMostColumns);
-    tbb::enumerable_thread_specific<Task> scratch;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, columnCount, grain),
-        [&](const auto& range) {
-            progress.check();
-            work(range.begin(), range.end(), scratch.local());
-        },
-        tbb::simple_partitioner());
-}
+// What the columns of one direction become, by task: some columns of one block.
+template <class Made>
+class Tasks {
+  public:
+    // Calls work(columns, scratch, made).
+    template <class Work>
+    Tasks(const Columns& columns, const Progress& progress, const Work& work) {
+        constexpr std::size_t kMostColumns = 4, kTasks = 64;
+        const std::size_t grain = std::clamp<std::size_t>(columns.size() / kTasks, 1, kMostColumns);
+        std::vector<Columns::Range> ranges;
+        for (const Columns::Range& block : columns.blocks()) {
+            blocks_.push_back({ranges.size(), ranges.size()});
+            for (std::size_t begin = block.begin; begin < block.end; begin += grain)
+                ranges.push_back({begin, std::min(begin + grain, block.end)});
+            blocks_.back().end = ranges.size();
+        }
+        made_.resize(ranges.size());
+        tbb::enumerable_thread_specific<Scratch> scratch;
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, ranges.size()),
+            [&](const auto& some) {
+                for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                    progress.check();
+                    work(ranges[i], scratch.local(), made_[i]);
+                }
+            },
+            tbb::simple_partitioner());
+    }
 
-// Leaves come sorted by column: neighbours share the nodes above, which the accessor remembers.
-template <class Tree, class Made, class LeavesOf>
-void hang(Tree& tree, std::vector<Made>& made, const LeavesOf& leavesOf) {
-    openvdb::tree::ValueAccessor<Tree> accessor(tree);
-    for (Made& column : made)
-        for (auto& leaf : leavesOf(column)) accessor.addLeaf(leaf.release());
-}
+    // Hangs all leaves of one kind into a tree that has none; leavesOf(made). No two blocks share an internal node: these are
+    // filled side by side.
+    template <class Tree, class LeavesOf>
+    void hang(Tree& tree, const LeavesOf& leavesOf) {
+        using Upper = typename Tree::RootNodeType::ChildNodeType;
+        using Lower = typename Upper::ChildNodeType;
+        std::vector<std::vector<std::unique_ptr<Lower>>> nodes(blocks_.size());
+        const auto background = tree.background();
+        tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t block) {
+            Lower* node = nullptr;
+            for (std::size_t i = blocks_[block].begin; i < blocks_[block].end; ++i)
+                for (auto& leaf : leavesOf(made_[i])) {
+                    const openvdb::Coord origin = leaf->origin() & ~(static_cast<int>(Lower::DIM) - 1);
+                    if (!node || node->origin() != origin) {
+                        auto& known = nodes[block];
+                        auto found = std::find_if(known.begin(), known.end(),
+                                                  [&](const auto& n) { return n->origin() == origin; });
+                        if (found == known.end())
+                            found = known.insert(found, std::make_unique<Lower>(origin, background));
+                        node = found->get();
+                    }
+                    node->addLeaf(leaf.release());
+                }
+        });
+        for (auto& some : nodes)
+            for (auto& node : some) {
+                const openvdb::Coord origin = node->origin() & ~(static_cast<int>(Upper::DIM) - 1);
+                Upper* upper = tree.template probeNode<Upper>(origin);
+                if (!upper) tree.root().addChild(upper = new Upper(origin, background));
+                upper->addChild(node.release());
+            }
+    }
+
+  private:
+    std::vector<Columns::Range> blocks_;  // tasks of each
+    std::vector<Made> made_;
+};
 
 openvdb::math::Transform::Ptr scaledAlong(const openvdb::math::Transform& transform, int axis,
                                           double factor) {
@@ -368,24 +403,24 @@ BSplineField fineField(const BSplineField& coarse, const DetailGrid& details, co
                        int axis, ToFine toFine, const Progress& progress) {
     const auto K = static_cast<float>(coarse.K);
     const Columns columns(fineShape.tree(), axis);
-    std::vector<FineColumn> made(columns.size());
-    forEachTask(columns.size(), progress, [&](std::size_t begin, std::size_t end, Task& task) {
-        synthesiseColumns(coarse, details, fineShape, axis, K, toFine, columns, begin, end, task, made);
-    });
+    Tasks<FineColumns> tasks(
+        columns, progress, [&](Columns::Range range, Scratch& scratch, FineColumns& made) {
+            synthesiseColumns(coarse, details, fineShape, axis, K, toFine, columns, range, scratch, made);
+        });
 
     BSplineField fine;
     fine.K = coarse.K;
     fine.shape = openvdb::ConstPtrCast<Shape>(fineShape.copy());  // shares the tree
     fine.controlPoints = openvdb::FloatGrid::create(K);
     auto& tree = fine.controlPoints->tree();
-    hang(
-        tree, made, [](FineColumn & column) -> auto& { return column; });
+    tasks.hang(
+        tree, [](FineColumns & made) -> auto& { return made; });
     const auto valueHere = [&fineShape, K] {
         return [accessor = fineShape.getConstUnsafeAccessor(), K](const openvdb::Coord& c) {
             return accessor.getValue(c) ? -K : K;
         };
     };
-    fillTiles(tree, valueHere);
+    fillInsideTiles(tree, fineShape.tree(), -1, -K);
     fillRootTiles(
         tree, fineShape.tree(), [](const openvdb::Coord& c) { return c; }, valueHere);
 
@@ -401,10 +436,10 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
     const auto K = static_cast<float>(fine.K);
     const openvdb::BoolTree& fineShape = fine.shape->tree();
     const Columns columns(fineShape, axis);
-    std::vector<CoarseColumn> made(columns.size());
-    forEachTask(columns.size(), progress, [&](std::size_t begin, std::size_t end, Task& task) {
-        analyseColumns(fine, axis, K, columns, begin, end, task, made);
-    });
+    Tasks<CoarseColumns> tasks(columns, progress,
+                               [&](Columns::Range range, Scratch& scratch, CoarseColumns& made) {
+                                   analyseColumns(fine, axis, K, columns, range, scratch, made);
+                               });
 
     DirectionResult result;
     result.coarse.K = fine.K;
@@ -428,21 +463,21 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
     tbb::parallel_invoke(
         [&] {
             auto& tree = result.coarse.controlPoints->tree();
-            hang(
-                tree, made, [](CoarseColumn & c) -> auto& { return c.controlPoints; });
-            fillTiles(tree, valueHere);
+            tasks.hang(
+                tree, [](CoarseColumns & made) -> auto& { return made.controlPoints; });
+            fillInsideTiles(tree, fineShape, axis, -K);
             fillRootTiles(tree, fineShape, halved, valueHere);
         },
         [&] {
             auto& tree = result.coarse.shape->tree();
-            hang(
-                tree, made, [](CoarseColumn & c) -> auto& { return c.shape; });
-            fillTiles(tree, insideHere);
+            tasks.hang(
+                tree, [](CoarseColumns & made) -> auto& { return made.shape; });
+            fillInsideTiles(tree, fineShape, axis, true);
             fillRootTiles(tree, fineShape, halved, insideHere);
         },
         [&] {
-            hang(
-                result.details->tree(), made, [](CoarseColumn & c) -> auto& { return c.details; });
+            tasks.hang(
+                result.details->tree(), [](CoarseColumns & made) -> auto& { return made.details; });
         });
 
     const auto transform = scaledAlong(fine.transform(), axis, 2.0);
