@@ -61,7 +61,9 @@ class ShapeBeside {
         if (!node) return tiles_[part];
         const auto n = offsetOf(slot);
         const auto& entry = node->getTable()[n];
-        return node->getChildMask().isOn(n) ? entry.getChild()->getFirstValue() : entry.getValue();
+        if (!node->getChildMask().isOn(n)) return entry.getValue();
+        // Not getFirstValue(): a leaf of bools returns whether its first value is active (OpenVDB 10.0).
+        return entry.getChild()->getValue(entry.getChild()->origin());
     }
     static openvdb::Index offsetOf(const std::array<int, 3>& slot) {
         return static_cast<openvdb::Index>((slot[0] << ShapeNode::LOG2DIM | slot[1]) << ShapeNode::LOG2DIM |
