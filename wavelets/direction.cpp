@@ -24,7 +24,7 @@
 //   gather     the values of leaves -> lines
 //   transform  all intervals of one length, eight at a time (interval_batch.h)
 //   scatter    lines -> leaves; where nothing is known: ±K by sign, details 0
-// Leaves are made by the thread that owns the column and hung into the tree by one thread at the end.
+// Leaves are made by the thread that owns the column and hung into the trees at the end.
 
 namespace isowave::wavelets {
 namespace {
@@ -362,7 +362,10 @@ class Tasks {
         const auto background = tree.background();
         tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t block) {
             Lower* node = nullptr;
-            for (std::size_t i = blocks_[block].begin; i < blocks_[block].end; ++i)
+            constexpr std::size_t kAhead = 2;  // tasks
+            for (std::size_t i = blocks_[block].begin; i < blocks_[block].end; ++i) {
+                if (i + kAhead < blocks_[block].end)
+                    for (const auto& leaf : leavesOf(made_[i + kAhead])) prefetch(leaf.get(), 1);
                 for (auto& leaf : leavesOf(made_[i])) {
                     const openvdb::Coord origin = leaf->origin() & ~(static_cast<int>(Lower::DIM) - 1);
                     if (!node || node->origin() != origin) {
@@ -375,6 +378,7 @@ class Tasks {
                     }
                     node->addLeaf(leaf.release());
                 }
+            }
         });
         for (auto& some : nodes)
             for (auto& node : some) {

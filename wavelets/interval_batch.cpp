@@ -38,7 +38,8 @@ void BatchTransform::start(int n) {
     outAt_ = padded;
     foldedAt_ = 2 * padded;
     if (scratch_.size() < 2 * padded + fine) scratch_.resize(2 * padded + fine);
-    std::fill_n(row0() + rowsOf(n) * kLanes, kBandwidth * kLanes, 0.0);  // longer ones left values there
+    if (n > kShort)  // elimination reads there, and longer intervals left values
+        std::fill_n(row0() + rowsOf(n) * kLanes, kBandwidth * kLanes, 0.0);
 }
 
 template <class Pack, bool kWide>
