@@ -135,7 +135,7 @@ void IntervalBatch(benchmark::State& state) {
         analysis.fine[lane] = fine[lane].data();
         synthesis.coarse[lane] = analysis.coarse[lane] = coarse[lane].data();
         synthesis.detail[lane] = analysis.detail[lane] = detail[lane].data();
-        synthesis.left[lane] = synthesis.right[lane] = 1;
+        synthesis.left[lane] = synthesis.right[lane] = 0.3f;
         synthesis.fine[lane] = fine[lane].data() + 1;
     }
     wavelets::BatchTransform transform;

@@ -18,12 +18,12 @@ using BoolLeaf = openvdb::BoolTree::LeafNodeType;
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 // Not registered with their trees, which costs more than what they are used for; trees do not change while they live.
 using ShapeAccessor = openvdb::tree::ValueAccessor<const openvdb::BoolTree, false>;
-using ValueAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
+using FloatAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
 
 // Its memory is kept from one column to the next.
 class ColumnLines {
   public:
-    // Which leaves there are; they are not looked at. REQUIRES: `column` outlives the calls below.
+    // Which leaves there are. Does not touch them, so that they can be asked for meanwhile. REQUIRES: `column` outlives the calls below.
     void look(const Column& column, int axis);
     // Throws InputError where a run is shorter than four points.
     void plan(const ShapeAccessor& shape);
@@ -40,6 +40,9 @@ class ColumnLines {
     openvdb::Coord coarseOrigin(int k) const { return column_->origin(axis_, firstLeaf_ / 2 + k); }
 
     const BoolLeaf* fineLeaf(int k) const { return fineLeaves_[k]; }  // null: none
+    LeafWords fineKnown(int k) const {
+        return wordsOf(fineLeaves_[k]->getValueMask());
+    }  // REQUIRES: there is one
     LeafWords fineInside(int k) const;
     bool inside(int line, int position) const;
 

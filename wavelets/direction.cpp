@@ -6,7 +6,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <array>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,16 +17,20 @@
 #include "wavelets/column_lines.h"
 #include "wavelets/interval_batch.h"
 #include "wavelets/line_values.h"
+#include "wavelets/waiting_room.h"
 
 // Both directions of the transform run the same passes on a handful of columns at a time:
 //   plan       what is known, from the shape's masks -> intervals, and the coarse control points and details they have;
-//              the leaves that will hold results, whose values are on their way into the cache
+//              the leaves that will hold results. The values that are read next are asked for meanwhile.
 //   gather     the values of leaves -> lines
-//   transform  all intervals of one length, eight at a time (interval_batch.h)
+//   transform  intervals of one length, eight at a time (waiting_room.h, interval_batch.h)
 //   scatter    lines -> leaves; where nothing is known: ±K by sign, details 0
 // Leaves are made by the thread that owns the column and hung into the trees at the end.
 
 namespace isowave::wavelets {
+
+static_assert(kSlack <= kLeafDim, "what a batch reads behind a line is there (LineValues::line)");
+
 namespace {
 
 // ---- leaves ---------------------------------------------------------------------------------------------
@@ -58,6 +62,21 @@ std::unique_ptr<BoolLeaf> makeShapeLeaf(const openvdb::Coord& origin, const Leaf
     leaf->setValueMask(maskOf(known));
     setInside(*leaf, inside);
     return leaf;
+}
+
+// Throws InputError about `object` where a leaf (null: none) lacks a value that is needed.
+void requireAll(const char* object, const char* what, const openvdb::Coord& origin, const LeafWords& needed,
+                const FloatLeaf* leaf) {
+    const LeafWords have = leaf ? wordsOf(leaf->getValueMask()) : LeafWords{};
+    for (int x = 0; x < kLeafDim; ++x)
+        if (const Word missing = needed[x] & ~have[x]) {
+            const int bit = std::countr_zero(missing);
+            const openvdb::Coord at = origin.offsetBy(x, bit >> 3, bit & 7);
+            throw InputError(
+                object, fmt::format("no {} at ({}, {}, {}) although the step's shape needs one; the parts "
+                                    "of the {} do not belong together",
+                                    what, at.x(), at.y(), at.z(), object));
+        }
 }
 
 // What some columns become.
@@ -100,44 +119,6 @@ void scatter(const LineValues& lines, int axis, float K, const std::vector<Sink>
     for (const Sink& s : sinks) lines.takeLeaf(s.k, axis, s.known, s.inside, K, s.values);
 }
 
-// Intervals wait here until there are as many of their length as a batch has lanes.
-template <class Batch>
-class WaitingRoom {
-  public:
-    // Calls put(batch, lane), and run(batch) for batches that are full or have to make room for another length.
-    template <class Put, class Run>
-    ISOWAVE_INLINE void add(int n, const Put& put, const Run& run) {
-        Batch& batch = batches_[n % kSlots];
-        if (batch.lanes == 0) {
-            taken_.push_back(n % kSlots);
-            batch.n = n;
-        } else if (batch.n != n) {
-            run(batch);
-            batch.lanes = 0;
-            batch.n = n;
-        }
-        put(batch, batch.lanes);
-        if (++batch.lanes < kLanes) return;
-        run(batch);
-        batch.lanes = 0;
-    }
-    // Calls run(batch) for all that wait.
-    template <class Run>
-    void runAll(const Run& run) {
-        for (const int slot : taken_)
-            if (Batch& batch = batches_[slot]; batch.lanes > 0) {
-                run(batch);
-                batch.lanes = 0;
-            }
-        taken_.clear();
-    }
-
-  private:
-    static constexpr int kSlots = 256;  // few intervals are longer
-    std::array<Batch, kSlots> batches_{};
-    std::vector<int> taken_;
-};
-
 // The scratch of one thread.
 struct Scratch {
     BatchTransform transform;
@@ -160,7 +141,7 @@ ISOWAVE_INLINE void lookAt(const Column& found, int axis, ColumnAtWork& column) 
 // ---- analysis of some columns ---------------------------------------------------------------------------
 
 // What is not known is ±K in the field's own leaves too: they are read as they are, accessory points and all.
-void findFine(const ValueAccessor& controlPoints, ColumnAtWork& column) {
+void findFine(const FloatAccessor& controlPoints, ColumnAtWork& column) {
     const ColumnLines& lines = column.lines;
     column.fineSources.clear();
     for (int k = 0; k < lines.fineLeafCount(); ++k) {
@@ -175,10 +156,16 @@ void gatherFine(int axis, float K, ColumnAtWork& column) {
     const ColumnLines& lines = column.lines;
     column.fine.reset(lines.fineLeafCount());
     for (const Source& s : column.fineSources)
-        if (s.leaf)
+        if (s.leaf) {
             column.fine.putLeaf(s.k, axis, s.values());
-        else
+        } else if (!lines.fineLeaf(s.k)) {
             column.fine.fillLeaf(s.k, lines.inside(0, s.k * kLeafDim) ? -K : K);
+        } else {
+            requireAll("field", "control point", lines.fineOrigin(s.k), lines.fineKnown(s.k), nullptr);
+            std::array<float, FloatLeaf::SIZE> values;
+            fillBySign(lines.fineInside(s.k), K, values.data());
+            column.fine.putLeaf(s.k, axis, values.data());
+        }
 }
 
 void makeCoarseLeaves(ColumnAtWork& column, CoarseColumns& out) {
@@ -202,7 +189,7 @@ void makeCoarseLeaves(ColumnAtWork& column, CoarseColumns& out) {
 void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& columns, Columns::Range range,
                     Scratch& scratch, CoarseColumns& made) {
     const ShapeAccessor shape(fine.shape->tree());
-    const ValueAccessor controlPoints(fine.controlPoints->tree());
+    const FloatAccessor controlPoints(fine.controlPoints->tree());
     const auto atWork = scratch.take(range.end - range.begin);
     for (std::size_t i = 0; i < atWork.size(); ++i) {
         lookAt(columns[range.begin + i], axis, atWork[i]);
@@ -240,7 +227,7 @@ void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& 
 // ---- synthesis of some columns --------------------------------------------------------------------------
 
 // The leaves of a tree under a column's coarse leaves. Throws InputError where one lacks a value that the step needs.
-void findCoarse(const ValueAccessor& tree, const ColumnLines& lines,
+void findCoarse(const FloatAccessor& tree, const ColumnLines& lines,
                 LeafWords (ColumnLines::*needed)(int) const, const char* what, std::vector<Source>& sources) {
     sources.clear();
     for (int k = 0; k < lines.coarseLeafCount(); ++k) {
@@ -250,17 +237,7 @@ void findCoarse(const ValueAccessor& tree, const ColumnLines& lines,
         const openvdb::Coord origin = lines.coarseOrigin(k);
         const FloatLeaf* leaf = tree.probeConstLeaf(origin);
         if (leaf) sources.push_back({k, leaf});
-        const LeafWords have = leaf ? wordsOf(leaf->getValueMask()) : LeafWords{};
-        for (int x = 0; x < kLeafDim; ++x)
-            if (const Word missing = need[x] & ~have[x]) {
-                const int bit = std::countr_zero(missing);
-                const openvdb::Coord at = origin.offsetBy(x, bit >> 3, bit & 7);
-                throw InputError(
-                    "pyramid",
-                    fmt::format("no {} at ({}, {}, {}) although the step's shape needs one; the parts "
-                                "of the pyramid do not belong together",
-                                what, at.x(), at.y(), at.z()));
-            }
+        requireAll("pyramid", what, origin, need, leaf);
     }
 }
 
@@ -281,7 +258,7 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
                        int axis, float K, ToFine toFine, const Columns& columns, Columns::Range range,
                        Scratch& scratch, FineColumns& made) {
     const ShapeAccessor shape(fineShape.tree());
-    const ValueAccessor controlPoints(coarse.controlPoints->tree()), detailTree(details.tree());
+    const FloatAccessor controlPoints(coarse.controlPoints->tree()), detailTree(details.tree());
     const auto atWork = scratch.take(range.end - range.begin);
     for (std::size_t i = 0; i < atWork.size(); ++i) lookAt(columns[range.begin + i], axis, atWork[i]);
     for (ColumnAtWork& column : atWork) {
@@ -358,7 +335,7 @@ class Tasks {
     void hang(Tree& tree, const LeavesOf& leavesOf) {
         using Upper = typename Tree::RootNodeType::ChildNodeType;
         using Lower = typename Upper::ChildNodeType;
-        std::vector<std::vector<std::unique_ptr<Lower>>> nodes(blocks_.size());
+        std::vector<std::map<openvdb::Coord, std::unique_ptr<Lower>>> nodes(blocks_.size());
         const auto background = tree.background();
         tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t block) {
             Lower* node = nullptr;
@@ -369,20 +346,17 @@ class Tasks {
                 for (auto& leaf : leavesOf(made_[i])) {
                     const openvdb::Coord origin = leaf->origin() & ~(static_cast<int>(Lower::DIM) - 1);
                     if (!node || node->origin() != origin) {
-                        auto& known = nodes[block];
-                        auto found = std::find_if(known.begin(), known.end(),
-                                                  [&](const auto& n) { return n->origin() == origin; });
-                        if (found == known.end())
-                            found = known.insert(found, std::make_unique<Lower>(origin, background));
-                        node = found->get();
+                        auto& place = nodes[block][origin];
+                        if (!place) place = std::make_unique<Lower>(origin, background);
+                        node = place.get();
                     }
                     node->addLeaf(leaf.release());
                 }
             }
         });
         for (auto& some : nodes)
-            for (auto& node : some) {
-                const openvdb::Coord origin = node->origin() & ~(static_cast<int>(Upper::DIM) - 1);
+            for (auto& [lower, node] : some) {
+                const openvdb::Coord origin = lower & ~(static_cast<int>(Upper::DIM) - 1);
                 Upper* upper = tree.template probeNode<Upper>(origin);
                 if (!upper) tree.root().addChild(upper = new Upper(origin, background));
                 upper->addChild(node.release());

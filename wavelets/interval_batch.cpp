@@ -4,13 +4,14 @@
 #include <cassert>
 #include <cmath>
 
-#include "wavelets/blocks.h"
+#include "wavelets/interval_blocks.h"
 #include "wavelets/interval_kernels.h"
 
-// What `objdump -d` shows (g++ 12 -O3, four lanes an instruction). applyShort's inner loop: 8 vmulpd that take their
-// second operand from memory, 8 vaddpd, 4 vbroadcastsd, two instructions of loop; all eight sums in registers. solveBanded's:
-// unrolled three times, the last five rows kept in registers, a row of eight lanes in 12 vmulpd, 10 vsubpd and 6
-// vbroadcastsd. No vfmadd, no call but the one for the tables. Two lanes an instruction: the same with mulpd, addpd.
+// What `objdump -d` shows (g++ 12 -O3, eight lanes an instruction). applyShort's inner loop: 4 vmulpd that take their
+// second operand from memory, 4 vaddpd, 4 vbroadcastsd, two instructions of loop; all four sums in registers. solveBanded's:
+// unrolled, the last five rows kept in registers, a row of eight lanes in 6 vmulpd (most broadcast their factor from
+// memory) and 5 vsubpd. No vfmadd, no call but the one for the tables. Four and two lanes an instruction: the same twice
+// and four times.
 
 namespace isowave::wavelets {
 namespace {
@@ -38,8 +39,8 @@ void BatchTransform::start(int n) {
     outAt_ = padded;
     foldedAt_ = 2 * padded;
     if (scratch_.size() < 2 * padded + fine) scratch_.resize(2 * padded + fine);
-    if (n > kShort)  // elimination reads there, and longer intervals left values
-        std::fill_n(row0() + rowsOf(n) * kLanes, kBandwidth * kLanes, 0.0);
+    // Elimination multiplies what is there with 0, and longer intervals may have left an infinity.
+    if (n > kShort) std::fill_n(row0() + rowsOf(n) * kLanes, kBandwidth * kLanes, 0.0);
 }
 
 template <class Pack, bool kWide>
@@ -111,6 +112,7 @@ void BatchTransform::synthesise(const SynthesisBatch& batch) {
 void BatchTransform::gain(const SynthesisBatch& batch) {
     using Pack = Two<Double2>;
     const int n = batch.n, lanes = batch.lanes, count = (2 * n + 5) * kLanes;
+    assert(n >= 1 && 1 <= lanes && lanes <= kLanes);
     start(n);
     double *const y = row0(), *const out = y + outAt_, *const rows = y + kFirstCoarseRow * kLanes;
     std::fill_n(rows, count, 0.0);

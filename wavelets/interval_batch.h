@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "wavelets/vectors.h"
+#include "wavelets/interval_vectors.h"
 
 namespace isowave::wavelets {
 
@@ -50,9 +50,9 @@ class BatchTransform {
     void start(int n);
     double* row0();
     template <class Pack, bool kWide>
-    void analyseBy(const AnalysisBatch& batch);
+    inline void analyseBy(const AnalysisBatch& batch);
     template <class Pack, bool kWide>
-    void synthesiseBy(const SynthesisBatch& batch);
+    inline void synthesiseBy(const SynthesisBatch& batch);
     void analyseByFour(const AnalysisBatch& batch);
     void analyseByEight(const AnalysisBatch& batch);
     void synthesiseByFour(const SynthesisBatch& batch);

@@ -1,8 +1,8 @@
 // Analysis and synthesis of several intervals of one length side by side, one lane each. Everything is templated on
 // how many doubles go into one operation (Pack), and forced inline, so that one text serves a single interval
-// (interval.cpp), two lanes an instruction and, inside functions compiled for them, four and eight (interval_batch.cpp). Every lane
-// sees the same operations in the same order whatever the Pack, and -ffp-contract=off keeps compilers from fusing
-// them: results are the same to the bit on every machine.
+// (interval.cpp), two lanes an instruction and, inside functions compiled for them, four and eight (interval_batch.cpp).
+// Every lane sees the same operations in the same order whatever the Pack, and -ffp-contract=off keeps compilers from
+// fusing them: results are the same to the bit on every machine.
 //
 // Rows are those of interval_tables.h; `y` points at lane 0 of row 0, rows are `stride` doubles apart, kMargin rows lie
 // before row 0 and kBandwidth behind the last.
@@ -12,7 +12,7 @@
 #include <cstddef>
 
 #include "wavelets/interval_tables.h"
-#include "wavelets/vectors.h"
+#include "wavelets/interval_vectors.h"
 
 namespace isowave::wavelets {
 

@@ -4,13 +4,10 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 
 #include "volume/leaf_words.h"
 
 namespace isowave::wavelets {
-
-static_assert(std::endian::native == std::endian::little, "bytes of a word are addressed in ascending order");
 
 inline constexpr int kLeafLog2 = 3, kLeafDim = 8, kLinesPerLeaf = kLeafDim * kLeafDim;
 

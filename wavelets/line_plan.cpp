@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 namespace isowave::wavelets {
 
@@ -74,12 +75,12 @@ ISOWAVE_INLINE void LinePlan::makeBy() {
 ISOWAVE_FOUR void LinePlan::makeByFour() { makeBy(); }
 ISOWAVE_EIGHT void LinePlan::makeByEight() { makeBy(); }
 
-// Only the planes of known_ have to be 0, which a column need not fill; those at the ends always are.
+// The planes at both ends must be 0, and nothing is ever written there.
 void LinePlan::resize(int planes) {
     if (planes == planes_) return;
-    planes_ = planes;
     for (Planes* each : {&known_, &joined_, &dilated_, &eroded_}) each->reset(planes);
     coarse_.resize(std::size_t(planes) * kLeavesPerPlane);
+    planes_ = planes;
 }
 
 void LinePlan::make(std::span<const LeafLines> known) {

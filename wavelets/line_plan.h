@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "wavelets/interval.h"
+#include "wavelets/interval_vectors.h"
 #include "wavelets/line_bits.h"
-#include "wavelets/vectors.h"
 
 namespace isowave::wavelets {
 
@@ -90,7 +90,7 @@ class LinePlan {
     }
 
     void resize(int planes);
-    void makeBy();
+    inline void makeBy();
     void makeByFour();
     void makeByEight();
 

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "wavelets/blocks.h"
+#include "wavelets/interval_blocks.h"
 
 // Line 8a + b of a leaf, a and b the coordinates on the two other axes in ascending order. A block is the eight lines of one
 // a: for z its rows are rows of the leaf (x = a, y = b); for y they are those of x = a, transposed; for x those of y = a,
@@ -27,8 +27,8 @@ ISOWAVE_INLINE int bitsOf(const LeafWords& words, int axis, int a, int b) {
 }
 
 // Lane i: whether bit i is set.
-ISOWAVE_INLINE void spread(int bits, Int8& mask) {
-    const Int8 each = {1, 2, 4, 8, 16, 32, 64, 128};
+ISOWAVE_INLINE void spread(int bits, Ints8& mask) {
+    const Ints8 each = {1, 2, 4, 8, 16, 32, 64, 128};
     mask = ((each & bits) != 0);
 }
 
@@ -42,7 +42,7 @@ ISOWAVE_INLINE void takeBlocks(const float* line0, std::size_t apart, int axis, 
         const BlockPlace place = placeOf(axis, a);
         if (place.transposed) transpose(r);
         for (int b = 0; b < kBlock; ++b) {
-            Int8 isKnown, isInside;
+            Ints8 isKnown, isInside;
             spread(bitsOf(known, axis, a, b), isKnown);
             spread(bitsOf(inside, axis, a, b), isInside);
             const Float8 unknown = (Float8)(k ^ (isInside & kSign));

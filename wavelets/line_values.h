@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "volume/leaf_words.h"
+#include "wavelets/interval_vectors.h"
 #include "wavelets/line_bits.h"
-#include "wavelets/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -12,9 +12,7 @@ using openvdb::BoolTree;
 using openvdb::Coord;
 using openvdb::FloatTree;
 
-constexpr int kLeaf = 8, kLower = 128, kUpper = 4096;
-
-int rounded(int x, int to) { return x & ~(to - 1); }
+constexpr int kLower = 128, kUpper = 4096;
 
 // Leaves, and tiles of every size, some inside, on both sides of the origin. What is in a leaf's slot has one value.
 BoolTree randomShape(std::mt19937& rng) {
@@ -24,9 +22,9 @@ BoolTree randomShape(std::mt19937& rng) {
         for (int a = 0; a < 3; ++a) c[a] = static_cast<int>(rng() % (2 * reach)) - reach;
         return c;
     };
-    for (int i = 0; i < 4; ++i) shape.addTile(3, at(2 * kUpper), true, false);     // of 4096^3
-    for (int i = 0; i < 2000; ++i) shape.addTile(2, at(kUpper / 2), rng() % 3, false);   // of 128^3
-    for (int i = 0; i < 400; ++i) shape.addTile(1, at(kLower), rng() % 3, false);  // of 8^3
+    for (int i = 0; i < 4; ++i) shape.addTile(3, at(2 * kUpper), true, false);          // of 4096^3
+    for (int i = 0; i < 2000; ++i) shape.addTile(2, at(kUpper / 2), rng() % 3, false);  // of 128^3
+    for (int i = 0; i < 400; ++i) shape.addTile(1, at(kLower), rng() % 3, false);       // of 8^3
     for (int i = 0; i < 300; ++i) {
         const Coord c = at(i % 2 ? kLower : kUpper);
         shape.touchLeaf(c)->fill(shape.getValue(c));
@@ -81,13 +79,16 @@ TEST(FillInsideTiles, LeavesAreLeftAlone) {
     std::mt19937 rng(2);
     const BoolTree shape = randomShape(rng);
     auto field = someLeaves<FloatTree>(rng, 4.0f);
+    for (auto leaf = field.beginLeaf(); leaf; ++leaf)
+        for (openvdb::Index i = 0; i < 512; ++i)
+            leaf->setValueOnly(i, static_cast<float>(leaf->origin().x()) + static_cast<float>(i) / 1024);
     const auto leaves = field.leafCount();
     fillInsideTiles(field, shape, 1, -4.0f);
     EXPECT_EQ(field.leafCount(), leaves);
-    for (auto leaf = field.cbeginLeaf(); leaf; ++leaf) {
-        EXPECT_EQ(leaf->getFirstValue(), 4.0f);
-        EXPECT_EQ(rounded(leaf->origin().x(), kLeaf), leaf->origin().x());
-    }
+    for (auto leaf = field.cbeginLeaf(); leaf; ++leaf)
+        for (openvdb::Index i = 0; i < 512; ++i)
+            ASSERT_EQ(leaf->getValue(i),
+                      static_cast<float>(leaf->origin().x()) + static_cast<float>(i) / 1024);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The promises of wavelets/line_bits.h, line_plan.h, line_values.h and columns.h: beside twins that go point by point.
+// The promises of wavelets/columns.h and of what a column is made of, line_bits.h, line_plan.h and line_values.h: beside twins that go point by point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -228,6 +228,27 @@ TEST(ColumnsOfATree, HoldEveryLeafOnceAndEndWhereFourAreMissing) {
             endOf[uv] = column.end();
         }
         ASSERT_EQ(seen.size(), placed.size());
+        // Blocks: columns under one internal node, which no other block has; one range behind the other.
+        std::map<std::pair<int, int>, int> blockOf;
+        std::size_t next = 0;
+        for (const Columns::Range& block : columns.blocks()) {
+            ASSERT_EQ(block.begin, next);
+            ASSERT_LT(block.begin, block.end);
+            const auto nodeOf = [&](std::size_t i) {
+                constexpr int kNodeDim = 16 * kLeafDim;
+                return std::pair(columns[i].u & ~(kNodeDim - 1), columns[i].v & ~(kNodeDim - 1));
+            };
+            ASSERT_EQ(++blockOf[nodeOf(block.begin)], 1);
+            const auto placeOf = [&](std::size_t i) {
+                return std::tuple(columns[i].u, columns[i].v, columns[i].first);
+            };
+            for (std::size_t i = block.begin + 1; i < block.end; ++i) {
+                ASSERT_EQ(nodeOf(i), nodeOf(block.begin));
+                ASSERT_LT(placeOf(i - 1), placeOf(i));
+            }
+            next = block.end;
+        }
+        EXPECT_EQ(next, columns.size());
         for (const auto& [origin, times] : seen) EXPECT_EQ(times, 1) << origin;
     }
 }

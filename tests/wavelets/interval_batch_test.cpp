@@ -1,15 +1,17 @@
-// The promises of wavelets/interval_batch.h, for every width of vectors that this machine has.
+// The promises of wavelets/interval_batch.h and waiting_room.h, for every width of vectors that this machine has.
 #include "wavelets/interval_batch.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <span>
 #include <vector>
 
 #include "vector_widths.h"
 #include "wavelets/interval.h"
+#include "wavelets/waiting_room.h"
 
 namespace isowave::wavelets {
 namespace {
@@ -130,8 +132,10 @@ TEST_P(IntervalBatch, WhatALaneHeldBeforeDoesNotMatter) {
     BatchTransform used(GetParam()), fresh(GetParam());
     for (int n = 40; n >= 1; --n) {  // leaves values behind the rows of the shorter ones
         Lanes room(n, kLanes);
-        for (auto& line : room.fine) std::fill(line.begin(), line.end(), 1e30f);
+        for (auto& line : room.fine)
+            std::fill(line.begin(), line.end(), std::numeric_limits<float>::quiet_NaN());
         used.analyse(room.analysis);
+        used.synthesise(room.synthesis);
     }
     const Line line = randomLine(20, rng);
     std::vector<std::vector<float>> results;
@@ -141,9 +145,51 @@ TEST_P(IntervalBatch, WhatALaneHeldBeforeDoesNotMatter) {
         transform->analyse(room.analysis);
         results.push_back(room.coarse[0]);
         results.push_back(room.detail[0]);
+        room.synthesis.left[0] = room.synthesis.right[0] = 1;
+        transform->synthesise(room.synthesis);
+        results.push_back(room.fine[0]);
     }
-    EXPECT_EQ(results[0], results[2]);
-    EXPECT_EQ(results[1], results[3]);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(results[i], results[3 + i]);
+}
+
+// ---- waiting ---------------------------------------------------------------------------------------------
+
+struct FakeBatch {
+    int n = 0, lanes = 0;
+    int ids[kLanes];
+};
+
+TEST(WaitingRooms, EveryIntervalRunsOnceBesideOthersOfItsLength) {
+    constexpr int kSlots = WaitingRoom<FakeBatch>::kSlots;
+    std::mt19937 rng(5);
+    WaitingRoom<FakeBatch> room;
+    std::vector<int> lengthOf;
+    std::vector<int> timesRun;
+    int full = 0, early = 0;
+    const auto run = [&](const FakeBatch& batch) {
+        ASSERT_GE(batch.lanes, 1);
+        ASSERT_LE(batch.lanes, kLanes);
+        for (int lane = 0; lane < batch.lanes; ++lane) {
+            ASSERT_EQ(lengthOf[batch.ids[lane]], batch.n);
+            ++timesRun[batch.ids[lane]];
+        }
+        (batch.lanes == kLanes ? full : early) += 1;
+    };
+    for (int round = 0; round < 3; ++round) {
+        for (int i = 0; i < 500; ++i) {
+            const int id = static_cast<int>(lengthOf.size());
+            // 1 .. 5, and some that share a place with one of them
+            const int n = 1 + static_cast<int>(rng() % 5) + (rng() % 10 ? 0 : kSlots * (1 + round));
+            lengthOf.push_back(n);
+            timesRun.push_back(0);
+            room.add(
+                n, [&](FakeBatch& batch, int lane) { batch.ids[lane] = id; }, run);
+        }
+        room.runAll(run);
+        EXPECT_EQ(timesRun, std::vector<int>(timesRun.size(), 1)) << "all that waited have run";
+    }
+    EXPECT_GT(full, 30);
+    EXPECT_GT(early, 30);
 }
 
 TEST(IntervalTransform, AMirroredIntervalGivesMirroredResultsToTheBitWhereItIsShort) {

@@ -1,6 +1,7 @@
 // The promises of direction.h and pyramid.h on the whole zoo, and agreement with the oracle.
 #include "wavelets/pyramid.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <openvdb/tools/Count.h>
 #include <tbb/global_control.h>
@@ -241,6 +242,23 @@ TEST(Pyramid, RefusesAShapeWhoseRunsAreTooShort) {
     field.shape->tree().setValueOff(
         field.shape->transform().worldToIndexNodeCentered(openvdb::Vec3d(3, -2, 7)));
     EXPECT_THROW(analyseDirection(field, 0), InputError);
+}
+
+TEST(Pyramid, RefusesAShapeThatKnowsPointsWhichTheFieldHasNot) {
+    BSplineField field = zoo::binaryField(zoo::smoothSolids()[0]);
+    const auto origin = field.shape->tree().cbeginLeaf()->origin();
+    field.controlPoints->tree().addTile(1, origin, static_cast<float>(field.K), false);
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_THROW(
+            {
+                try {
+                    analyseDirection(field, axis);
+                } catch (const InputError& error) {
+                    EXPECT_THAT(error.what(), testing::HasSubstr("no control point at ("));
+                    throw;
+                }
+            },
+            InputError);
 }
 
 // ---- the oracle -----------------------------------------------------------------------------------------

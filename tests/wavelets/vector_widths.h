@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "wavelets/vectors.h"
+#include "wavelets/interval_vectors.h"
 
 namespace isowave::wavelets {
 

@@ -1,20 +1,20 @@
 // Blocks of 8 x 8 values, transposed in registers: between lines, which hold their values one behind the other, and lanes or
 // leaves, where neighbours belong to different lines. Moving 64 values takes 8 loads, 24 shuffles and 8 stores.
 //
-// kWide: the function that this is inlined into is compiled for vectors of eight floats. Without, plain loops.
+// __builtin_shufflevector: g++ 12 or clang. kWide: the function that this is inlined into is compiled for vectors of eight floats. Without, plain loops.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "wavelets/vectors.h"
+#include "wavelets/interval_vectors.h"
 
 namespace isowave::wavelets {
 
 inline constexpr int kBlock = 8;
 
 typedef float Float8 __attribute__((vector_size(32)));
-typedef std::int32_t Int8 __attribute__((vector_size(32)));
+typedef std::int32_t Ints8 __attribute__((vector_size(32)));
 typedef double Double8 __attribute__((vector_size(64)));
 
 ISOWAVE_INLINE void load(const float* from, Float8& to) { __builtin_memcpy(&to, from, sizeof to); }
@@ -79,8 +79,8 @@ ISOWAVE_INLINE void storeLanes(const double* rows, std::ptrdiff_t apart, int cou
                 for (int lane = 0; lane < kBlock; ++lane)
                     if (lane < lanes) store(r[lane], lines[lane] + i);
             } else {
-                const Int8 index = {0, 1, 2, 3, 4, 5, 6, 7};
-                const Int8 ours = index < here;
+                const Ints8 index = {0, 1, 2, 3, 4, 5, 6, 7};
+                const Ints8 ours = index < here;
                 for (int lane = 0; lane < kBlock; ++lane)
                     if (lane < lanes) {
                         Float8 before;

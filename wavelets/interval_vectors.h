@@ -10,8 +10,12 @@ enum class Vectors { two, four, eight };
 // Functions compiled for the wider ones. Call them where widestVectors() says so.
 #if defined(__x86_64__) && defined(__GNUC__)
 #define ISOWAVE_FOUR __attribute__((target("avx2")))
+#ifdef __clang__  // does not know the last word
+#define ISOWAVE_EIGHT __attribute__((target("avx2,avx512f,avx512vl,avx512dq,avx512bw")))
+#else
 #define ISOWAVE_EIGHT \
     __attribute__((target("avx2,avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")))
+#endif
 #else
 #define ISOWAVE_FOUR
 #define ISOWAVE_EIGHT
