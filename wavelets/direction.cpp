@@ -89,8 +89,8 @@ using FineColumns = std::vector<std::unique_ptr<FloatLeaf>>;
 // Values to be gathered from leaf k of a column, or scattered to it.
 struct Source {
     int k;
-    const FloatLeaf* leaf;  // null: none
-    const float* values() const { return leaf->buffer().data(); }
+    const FloatLeaf* leaf;          // null: none
+    const float* values = nullptr;  // once they have been asked for
 };
 struct Sink {
     int k;
@@ -107,13 +107,16 @@ struct ColumnAtWork {
     std::vector<Sink> fineSinks, coarseSinks, detailSinks;
 };
 
-ISOWAVE_INLINE void prefetchValues(const std::vector<Source>& sources) {
-    for (const Source& s : sources)
-        if (s.leaf) prefetch(s.values(), FloatLeaf::SIZE);
+ISOWAVE_INLINE void askForValues(std::vector<Source>& sources) {
+    for (Source& s : sources)
+        if (s.leaf) {
+            s.values = s.leaf->buffer().data();
+            prefetch(s.values, FloatLeaf::SIZE);
+        }
 }
 
 void gather(const std::vector<Source>& sources, int axis, LineValues& lines) {
-    for (const Source& s : sources) lines.putLeaf(s.k, axis, s.values());
+    for (const Source& s : sources) lines.putLeaf(s.k, axis, s.values);
 }
 void scatter(const LineValues& lines, int axis, float K, const std::vector<Sink>& sinks) {
     for (const Sink& s : sinks) lines.takeLeaf(s.k, axis, s.known, s.inside, K, s.values);
@@ -147,7 +150,7 @@ void findFine(const FloatAccessor& controlPoints, ColumnAtWork& column) {
     for (int k = 0; k < lines.fineLeafCount(); ++k) {
         const FloatLeaf* leaf =
             lines.fineLeaf(k) ? controlPoints.probeConstLeaf(lines.fineOrigin(k)) : nullptr;
-        column.fineSources.push_back({k, leaf});
+        column.fineSources.push_back({k, leaf, nullptr});
         if (leaf) prefetch(leaf, 1);
     }
 }
@@ -157,7 +160,7 @@ void gatherFine(int axis, float K, ColumnAtWork& column) {
     column.fine.reset(lines.fineLeafCount());
     for (const Source& s : column.fineSources)
         if (s.leaf) {
-            column.fine.putLeaf(s.k, axis, s.values());
+            column.fine.putLeaf(s.k, axis, s.values);
         } else if (!lines.fineLeaf(s.k)) {
             column.fine.fillLeaf(s.k, lines.inside(0, s.k * kLeafDim) ? -K : K);
         } else {
@@ -197,7 +200,7 @@ void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& 
     }
     for (ColumnAtWork& column : atWork) {
         column.lines.plan(shape);
-        prefetchValues(column.fineSources);
+        askForValues(column.fineSources);
         makeCoarseLeaves(column, made);
     }
     for (ColumnAtWork& column : atWork) gatherFine(axis, K, column);
@@ -236,7 +239,7 @@ void findCoarse(const FloatAccessor& tree, const ColumnLines& lines,
         if (isEmpty(need)) continue;
         const openvdb::Coord origin = lines.coarseOrigin(k);
         const FloatLeaf* leaf = tree.probeConstLeaf(origin);
-        if (leaf) sources.push_back({k, leaf});
+        if (leaf) sources.push_back({k, leaf, nullptr});
         requireAll("pyramid", what, origin, need, leaf);
     }
 }
@@ -266,8 +269,8 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
         findCoarse(controlPoints, column.lines, &ColumnLines::coarseKnown, "control point",
                    column.coarseSources);
         findCoarse(detailTree, column.lines, &ColumnLines::stored, "detail", column.detailSources);
-        prefetchValues(column.coarseSources);
-        prefetchValues(column.detailSources);
+        askForValues(column.coarseSources);
+        askForValues(column.detailSources);
         makeFineLeaves(column, made);
     }
     for (ColumnAtWork& column : atWork) {

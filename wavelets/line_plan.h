@@ -70,20 +70,24 @@ class LinePlan {
     void forEachRun(const Planes& lines, const F& f) const {
         for (int line = 0; line < kLinesPerLeaf; ++line) {
             const Word* w = lines.plane(0) + (line % kLeafDim * kLeafDim + line / kLeafDim);
-            int first = -1;
-            Word carry = 0;
+            int first = -1;  // of a run that comes from the plane before
             for (int p = 0; p < planes_; ++p, w += kPlaneWords) {
-                // Ones where a run starts and one behind where it ends.
-                Word edges = *w ^ (*w << 1 | carry);
-                carry = *w >> 63;
-                for (; edges != 0; edges &= edges - 1) {
-                    const int at = 64 * p + std::countr_zero(edges);
-                    if (first < 0) {
-                        first = at;
-                    } else {
-                        f(LineRun{line, first, at - 1});
-                        first = -1;
+                Word bits = *w;
+                if (first >= 0) {
+                    const int ones = std::countr_one(bits);
+                    if (ones == 64) continue;
+                    f(LineRun{line, first, 64 * p + ones - 1});
+                    first = -1;
+                    bits &= bits + 1;  // without its lowest ones
+                }
+                while (bits != 0) {
+                    const int at = std::countr_zero(bits), ones = std::countr_one(bits >> at);
+                    if (at + ones == 64) {  // goes on, or ends here: the next plane says
+                        first = 64 * p + at;
+                        break;
                     }
+                    f(LineRun{line, 64 * p + at, 64 * p + at + ones - 1});
+                    bits &= bits + (bits & -bits);  // without its lowest run
                 }
             }
         }
