@@ -16,20 +16,7 @@
 
 namespace isowave::wavelets {
 
-// One double.
-struct One {
-    static constexpr int kWidth = 1;
-    double a;
-    ISOWAVE_INLINE static One load(const double* p) { return {*p}; }
-    ISOWAVE_INLINE void store(double* p) const { *p = a; }
-    ISOWAVE_INLINE void addProduct(double m, const One& x) { a += m * x.a; }
-    ISOWAVE_INLINE void subtractProduct(double m, const One& x) { a -= m * x.a; }
-    ISOWAVE_INLINE static One product(double m, const One& x) { return {m * x.a}; }
-    ISOWAVE_INLINE static One sum(const One& x, const One& y) { return {x.a + y.a}; }
-    ISOWAVE_INLINE static One difference(const One& x, const One& y) { return {x.a - y.a}; }
-};
-
-// One of the machine's vectors.
+// One of the machine's vectors, or one double.
 template <class Vector>
 struct Alone {
     static constexpr int kWidth = sizeof(Vector) / sizeof(double);
@@ -46,6 +33,8 @@ struct Alone {
     ISOWAVE_INLINE static Alone sum(const Alone& x, const Alone& y) { return {x.a + y.a}; }
     ISOWAVE_INLINE static Alone difference(const Alone& x, const Alone& y) { return {x.a - y.a}; }
 };
+
+using One = Alone<double>;
 
 // Two of the machine's vectors: two independent chains hide half the latency.
 template <class Vector>
