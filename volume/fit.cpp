@@ -173,14 +173,7 @@ BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transfor
     leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
         fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
     });
-    const auto valueAt = [&signs, k] {
-        return [accessor = ConstAccessor<openvdb::BoolTree>(signs), k](const openvdb::Coord& c) {
-            return accessor.getValue(c) ? -k : k;
-        };
-    };
-    fillTiles(field.controlPoints->tree(), valueAt);
-    fillRootTiles(
-        field.controlPoints->tree(), signs, [](const openvdb::Coord& c) { return c; }, valueAt);
+    fillInsideTiles(field.controlPoints->tree(), signs, -1, -k);
     return field;
 }
 

@@ -13,6 +13,10 @@ namespace isowave {
 using LeafWords = std::array<std::uint64_t, 8>;
 using LeafMask = openvdb::util::NodeMask<3>;
 
+inline bool isEmpty(const LeafWords& words) {
+    return std::all_of(words.begin(), words.end(), [](std::uint64_t w) { return w == 0; });
+}
+
 inline LeafWords wordsOf(const LeafMask& mask) {
     LeafWords words;
     for (openvdb::Index x = 0; x < 8; ++x) words[x] = mask.getWord<std::uint64_t>(x);

@@ -44,16 +44,11 @@ LeafWords ColumnLines::fineInside(int k) const {
     return words;
 }
 
-bool ColumnLines::inside(int line, int position) const {
-    const int k = position >> kLeafLog2;
+bool ColumnLines::inside(int line, std::int64_t position) const {
+    const auto k = static_cast<std::size_t>(position >> kLeafLog2);
     if (!fineLeaves_[k]) return insideWithoutLeaf_[k];
-    const int at = offsetOf(axis_, line, position & (kLeafDim - 1));
+    const int at = offsetOf(axis_, line, static_cast<int>(position & (kLeafDim - 1)));
     return fineLeaves_[k]->buffer().data()[at >> 6] >> (at & 63) & 1;
-}
-
-bool ColumnLines::knowsAny(int k) const {
-    const LeafLines& lines = plan_.coarseKnown(k);
-    return std::any_of(lines.begin(), lines.end(), [](Word w) { return w != 0; });
 }
 
 }  // namespace isowave::wavelets

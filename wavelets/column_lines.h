@@ -10,6 +10,7 @@
 #include "volume/leaf_words.h"
 #include "volume/vdb.h"
 #include "wavelets/columns.h"
+#include "wavelets/interval.h"
 #include "wavelets/line_plan.h"
 
 namespace isowave::wavelets {
@@ -23,15 +24,16 @@ using FloatAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, fal
 // Its memory is kept from one column to the next.
 class ColumnLines {
   public:
-    // Which leaves there are. Does not touch them, so that they can be asked for meanwhile. REQUIRES: `column` outlives the calls below.
+    // Which leaves there are. Does not touch them, so that they can be asked for meanwhile.
+    // REQUIRES: `column` outlives the calls below.
     void look(const Column& column, int axis);
     // Throws InputError where a run is shorter than four points.
     void plan(const ShapeAccessor& shape);
 
-    // Calls f(line, first, n) for each interval: position of its first fine control point and number of coarse intervals.
+    // Calls f(line, Interval) for each.
     template <class F>
     void forEachInterval(const F& f) const {
-        plan_.forEachInterval([&](const LineRun& i) { f(i.line, i.first, (i.last - i.first - 2) / 2); });
+        plan_.forEachInterval([&](const LineRun& i) { f(i.line, Interval{i.first, i.last}); });
     }
 
     int fineLeafCount() const { return static_cast<int>(fineLeaves_.size()); }
@@ -40,14 +42,13 @@ class ColumnLines {
     openvdb::Coord coarseOrigin(int k) const { return column_->origin(axis_, firstLeaf_ / 2 + k); }
 
     const BoolLeaf* fineLeaf(int k) const { return fineLeaves_[k]; }  // null: none
-    LeafWords fineKnown(int k) const {
-        return wordsOf(fineLeaves_[k]->getValueMask());
-    }  // REQUIRES: there is one
+    // REQUIRES: there is one.
+    LeafWords fineKnown(int k) const { return wordsOf(fineLeaves_[k]->getValueMask()); }
     LeafWords fineInside(int k) const;
-    bool inside(int line, int position) const;
+    bool inside(int line, std::int64_t position) const;
 
     // By leaf of the coarse column; bits in a leaf's order.
-    bool knowsAny(int k) const;
+    bool knowsAny(int k) const { return !isEmpty(plan_.coarseKnown(k)); }
     LeafWords coarseKnown(int k) const { return wordsOfLines(plan_.coarseKnown(k), axis_); }
     LeafWords stored(int k) const { return wordsOfLines(plan_.stored(k), axis_); }
     // The signs of a coarse column are those of the even fine positions.

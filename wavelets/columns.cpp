@@ -12,16 +12,6 @@ namespace {
 using Node = openvdb::BoolTree::RootNodeType::ChildNodeType::ChildNodeType;
 constexpr int kNodeLog2 = Node::LOG2DIM, kNodeDim = 1 << kNodeLog2;
 
-// Where leaf (u, v) of a node, at `index` along the axis, is in the node's table.
-constexpr openvdb::Index slotOf(int axis, int u, int v, int index) {
-    const auto other = otherAxes(axis);
-    std::array<int, 3> at{};
-    at[axis] = index;
-    at[other[0]] = u;
-    at[other[1]] = v;
-    return static_cast<openvdb::Index>(at[0] << 2 * kNodeLog2 | at[1] << kNodeLog2 | at[2]);
-}
-
 // For each (u, v) of a node, which leaves along the axis there are.
 using ColumnMasks = std::array<std::uint16_t, kNodeDim * kNodeDim>;
 static_assert(sizeof(ColumnMasks::value_type) * 8 == kNodeDim);
@@ -30,9 +20,8 @@ ColumnMasks masksOf(const Node& node, int axis) {
     const auto other = otherAxes(axis);
     ColumnMasks masks{};
     for (auto child = node.getChildMask().beginOn(); child; ++child) {
-        const auto slot = static_cast<int>(child.pos());
-        const std::array<int, 3> at = {slot >> 2 * kNodeLog2, slot >> kNodeLog2 & (kNodeDim - 1),
-                                       slot & (kNodeDim - 1)};
+        openvdb::Coord at;
+        Node::offsetToLocalCoord(child.pos(), at);
         masks[at[other[0]] << kNodeLog2 | at[other[1]]] |= static_cast<std::uint16_t>(1 << at[axis]);
     }
     return masks;
@@ -67,7 +56,7 @@ void findColumns(Block& block, int axis) {
                 } else {
                     block.leaves.insert(block.leaves.end(), static_cast<std::size_t>(index - next), nullptr);
                 }
-                const auto slot = slotOf(axis, uv >> kNodeLog2, uv & (kNodeDim - 1), within);
+                const auto slot = Node::coordToOffset(block.columns.back().origin(axis, index));
                 block.leaves.push_back(node.getTable()[slot].getChild());
                 next = index + 1;
                 any = true;

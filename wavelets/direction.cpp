@@ -6,6 +6,8 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <map>
 #include <memory>
 #include <span>
@@ -34,10 +36,6 @@ static_assert(kSlack <= kLeafDim, "what a batch reads behind a line is there (Li
 namespace {
 
 // ---- leaves ---------------------------------------------------------------------------------------------
-
-bool isEmpty(const LeafWords& words) {
-    return std::all_of(words.begin(), words.end(), [](Word w) { return w == 0; });
-}
 
 // Leaves lie all over memory: they are asked for before they are needed. Inlined, or the compiler takes such functions for
 // ones without effect and leaves out the calls (g++ 12).
@@ -208,14 +206,13 @@ void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& 
     for (ColumnAtWork& column : atWork) {
         column.coarse.reset(column.lines.coarseLeafCount());
         column.detail.reset(column.lines.coarseLeafCount());
-        column.lines.forEachInterval([&](int line, int first, int n) {
-            const int firstCoarse = (first - 1) / 2;  // exact: first is odd
+        column.lines.forEachInterval([&](int line, const Interval& i) {
             scratch.analyses.add(
-                n,
+                static_cast<int>(i.coarseIntervals()),
                 [&](AnalysisBatch& batch, int lane) {
-                    batch.fine[lane] = column.fine.line(line) + first - 1;
-                    batch.coarse[lane] = column.coarse.line(line) + firstCoarse;
-                    batch.detail[lane] = column.detail.line(line) + firstCoarse + 1;
+                    batch.fine[lane] = column.fine.line(line) + i.first - 1;
+                    batch.coarse[lane] = column.coarse.line(line) + i.firstCoarse();
+                    batch.detail[lane] = column.detail.line(line) + i.firstDetail();
                 },
                 run);
         });
@@ -283,16 +280,15 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
     for (ColumnAtWork& column : atWork) {
         const ColumnLines& lines = column.lines;
         column.fine.reset(lines.fineLeafCount());
-        lines.forEachInterval([&](int line, int first, int n) {
-            const int firstCoarse = (first - 1) / 2, after = first + 2 * n + 3;
+        lines.forEachInterval([&](int line, const Interval& i) {
             scratch.syntheses.add(
-                n,
+                static_cast<int>(i.coarseIntervals()),
                 [&](SynthesisBatch& batch, int lane) {
-                    batch.coarse[lane] = column.coarse.line(line) + firstCoarse;
-                    batch.detail[lane] = column.detail.line(line) + firstCoarse + 1;
-                    batch.left[lane] = lines.inside(line, first - 1) ? -K : K;
-                    batch.right[lane] = lines.inside(line, after) ? -K : K;
-                    batch.fine[lane] = column.fine.line(line) + first;
+                    batch.coarse[lane] = column.coarse.line(line) + i.firstCoarse();
+                    batch.detail[lane] = column.detail.line(line) + i.firstDetail();
+                    batch.left[lane] = lines.inside(line, i.first - 1) ? -K : K;
+                    batch.right[lane] = lines.inside(line, i.last + 1) ? -K : K;
+                    batch.fine[lane] = column.fine.line(line) + i.first;
                 },
                 run);
         });
@@ -396,14 +392,7 @@ BSplineField fineField(const BSplineField& coarse, const DetailGrid& details, co
     auto& tree = fine.controlPoints->tree();
     tasks.hang(
         tree, [](FineColumns & made) -> auto& { return made; });
-    const auto valueHere = [&fineShape, K] {
-        return [accessor = fineShape.getConstUnsafeAccessor(), K](const openvdb::Coord& c) {
-            return accessor.getValue(c) ? -K : K;
-        };
-    };
     fillInsideTiles(tree, fineShape.tree(), -1, -K);
-    fillRootTiles(
-        tree, fineShape.tree(), [](const openvdb::Coord& c) { return c; }, valueHere);
 
     const auto transform = scaledAlong(coarse.transform(), axis, 0.5);
     fine.controlPoints->setTransform(transform);
@@ -427,34 +416,18 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
     result.coarse.controlPoints = openvdb::FloatGrid::create(K);
     result.coarse.shape = Shape::create(false);
     result.details = DetailGrid::create(0.0f);
-    const auto insideHere = [&fineShape, axis] {
-        return [accessor = openvdb::tree::ValueAccessor<const openvdb::BoolTree>(fineShape),
-                axis](openvdb::Coord c) {
-            c[axis] *= 2;
-            return accessor.getValue(c);
-        };
-    };
-    const auto valueHere = [&insideHere, K] {
-        return [inside = insideHere(), K](const openvdb::Coord& c) { return inside(c) ? -K : K; };
-    };
-    const auto halved = [axis](openvdb::Coord c) {
-        c[axis] >>= 1;
-        return c;
-    };
     tbb::parallel_invoke(
         [&] {
             auto& tree = result.coarse.controlPoints->tree();
             tasks.hang(
                 tree, [](CoarseColumns & made) -> auto& { return made.controlPoints; });
             fillInsideTiles(tree, fineShape, axis, -K);
-            fillRootTiles(tree, fineShape, halved, valueHere);
         },
         [&] {
             auto& tree = result.coarse.shape->tree();
             tasks.hang(
                 tree, [](CoarseColumns & made) -> auto& { return made.shape; });
             fillInsideTiles(tree, fineShape, axis, true);
-            fillRootTiles(tree, fineShape, halved, insideHere);
         },
         [&] {
             tasks.hang(

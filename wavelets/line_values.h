@@ -42,8 +42,8 @@ class LineValues {
                          float* values) const;
 
     Vectors vectors_;
-    std::size_t stride_ =
-        0;  // rows from one line to the next: odd, so that lines do not fall into the same cache sets
+    // Rows from one line to the next: odd, so that lines do not fall into the same cache sets.
+    std::size_t stride_ = 0;
     std::vector<Row> rows_;
 };
 

@@ -48,7 +48,7 @@ template <class Tree>
 void expectTilesOf(const Tree& tree, const BoolTree& shape, int halved, typename Tree::ValueType inside) {
     int tiles = 0, insideTiles = 0;
     for (auto it = tree.cbeginValueAll(); it; ++it) {
-        if (it.getDepth() != 1 && it.getDepth() != 2) continue;  // not the root's, not leaves'
+        if (it.getDepth() == 3) continue;  // not leaves'
         Coord c = it.getCoord();
         if (halved >= 0) c[halved] *= 2;
         const bool expected = shape.getValue(c);
