@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/links.h"
 
 namespace isowave {

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave {
 

@@ -1,6 +1,6 @@
 #include "base/links.h"
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <openvdb/tools/MultiResGrid.h>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave::bench {
 

@@ -31,7 +31,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/hierarchy.h"
 #include "subdivision/mesh_files.h"
 

@@ -15,7 +15,7 @@
 #include <functional>
 #include <random>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "bench/lifting.h"
 #include "subdivision/hierarchy.h"
 #include "subdivision/mesh_files.h"

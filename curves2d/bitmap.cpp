@@ -11,7 +11,7 @@
 #include <iterator>
 #include <limits>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {

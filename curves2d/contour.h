@@ -14,7 +14,7 @@
 
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "curves2d/row_field.h"
 
 namespace isowave::curves2d {

@@ -4,7 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "wavelets/interval.h"
 
 // Both ways run the same passes on a row:

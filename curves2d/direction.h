@@ -2,7 +2,7 @@
 // (wavelets/interval.h), in parallel over rows. The 3D twin is wavelets/direction.h.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "curves2d/row_field.h"
 
 namespace isowave::curves2d {

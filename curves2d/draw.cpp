@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/raster.h"
 
 namespace isowave::curves2d {

@@ -2,7 +2,7 @@
 // near the curve. The 3D twin, with what was measured, is volume/fit.h.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "curves2d/row_field.h"
 
 namespace isowave::curves2d {

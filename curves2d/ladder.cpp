@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/bitmap.h"
 #include "curves2d/polygon_input.h"
 #include "curves2d/raster.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "curves2d/contour.h"
 #include "curves2d/fit.h"
 #include "curves2d/pyramid.h"

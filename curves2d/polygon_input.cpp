@@ -9,7 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/segment_tree.h"
 
 namespace isowave::curves2d {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {

@@ -1,7 +1,7 @@
 // Polygons -> the lattice points inside them, exactly.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "curves2d/geometry.h"
 #include "curves2d/spans.h"
 

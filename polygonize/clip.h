@@ -1,7 +1,7 @@
 // Cutting a mesh off at the faces of a box: what an open image border needs.
 #pragma once
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <memory>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "polygonize/measure.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/measure_sample.h"
 
 namespace isowave {

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "polygonize/specks.h"
 #include "volume/field.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
 
 namespace isowave {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "base/progress.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/progress.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "volume/halving_tree.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/measure.h"
 #include "polygonize/measure_boxes.h"
 #include "polygonize/nearest_on_triangle.h"

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -12,7 +12,7 @@
 #include <unordered_set>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/topology.h"
 #include "volume/mesh_input.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

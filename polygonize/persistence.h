@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/vdb.h"
 
 namespace isowave {

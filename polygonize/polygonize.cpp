@@ -18,7 +18,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/blocks.h"
 #include "polygonize/cell_table.h"
 

@@ -1,9 +1,9 @@
 // A field -> a closed, oriented 2-manifold mesh of its zero set.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -9,9 +9,9 @@
 
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -1,9 +1,9 @@
 // Better triangles on the same surface: vertices slide along the zero set.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "polygonize/zero_set.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

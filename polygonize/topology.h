@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

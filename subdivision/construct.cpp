@@ -4,7 +4,7 @@
 #include <cassert>
 #include <set>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/exact_solve.h"
 
 namespace isowave::subdivision {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <charconv>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 

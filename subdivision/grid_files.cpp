@@ -9,7 +9,7 @@
 #include <functional>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/read_file.h"
 
 namespace isowave::subdivision {

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 namespace {

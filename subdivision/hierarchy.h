@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "subdivision/mesh_scheme.h"
 #include "subdivision/polygon_mesh.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 namespace {

@@ -19,7 +19,7 @@
 #include <numeric>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/hierarchy.h"
 
 namespace isowave::subdivision {

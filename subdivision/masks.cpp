@@ -1,6 +1,6 @@
 #include <cassert>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/construct.h"
 
 namespace isowave::subdivision {

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/read_file.h"
 
 namespace isowave::subdivision {

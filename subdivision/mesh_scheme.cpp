@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/quad_connectivity.h"
 #include "subdivision/triangle_step.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/curve_schemes.h"
 #include "subdivision/diagram_print.h"
 #include "subdivision/surface.h"

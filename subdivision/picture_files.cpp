@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 

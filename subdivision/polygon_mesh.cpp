@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 namespace {

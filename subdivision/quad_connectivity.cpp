@@ -9,7 +9,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/catmull_clark.h"
 
 namespace isowave::subdivision {

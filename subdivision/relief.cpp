@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 

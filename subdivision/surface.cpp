@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/curve_schemes.h"
 
 namespace isowave::subdivision {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 

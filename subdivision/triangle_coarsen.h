@@ -27,7 +27,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "subdivision/mesh_scheme.h"
 #include "subdivision/polygon_mesh.h"
 

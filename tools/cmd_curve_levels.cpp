@@ -1,5 +1,5 @@
 // isowave curve-levels INPUT -o DIR: polylines at coarser levels, with the error of each.
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/curve_report.h"
 #include "tools/commands.h"
 #include "tools/console.h"

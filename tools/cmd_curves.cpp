@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/draw.h"
 #include "curves2d/ladder.h"
 #include "curves2d/polygon_input.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/heap.h"
 #include "polygonize/measure.h"
 #include "polygonize/measure_sample.h"

@@ -1,7 +1,7 @@
 // isowave mesh INPUT --step S -o FILE: one step as a mesh.
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/zero_set.h"
 #include "tools/commands.h"
 #include "tools/input.h"

@@ -1,7 +1,7 @@
 // isowave rebuild BASE --details FILE -o OUT: a base and its details -> the mesh at any level, edited or simplified.
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/hierarchy_report.h"
 #include "subdivision/mesh_files.h"
 #include "tools/commands.h"

@@ -1,5 +1,5 @@
 // isowave relief INPUT -o DIR: a height field at coarser levels of a triangular subdivision.
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/picture_files.h"
 #include "subdivision/relief_report.h"
 #include "tools/commands.h"

@@ -1,6 +1,6 @@
 // isowave reverse MESH -o BASE: a mesh with subdivision connectivity, as a coarse base and details.
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/hierarchy_report.h"
 #include "subdivision/mesh_files.h"
 #include "tools/commands.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/hierarchy.h"
 #include "subdivision/mesh_files.h"
 #include "tools/commands.h"

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::tools {
 namespace {

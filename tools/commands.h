@@ -53,7 +53,7 @@ std::span<const ExitCode> exitCodes();
 const Command* findCommand(std::string_view name);
 
 // The subcommands, one file each (cmd_*.cpp). They return an exit code of the table; bad data, failed work
-// and stopped work are thrown (base/error.h, base/progress.h).
+// and stopped work are thrown (isowave/error.h, isowave/progress.h).
 int runLod(const Settings&, Console&);
 int runAnalyse(const Settings&, Console&);
 int runMesh(const Settings&, Console&);

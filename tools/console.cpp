@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::tools {
 namespace {

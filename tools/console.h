@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 
 namespace isowave::tools {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "tools/repair_json.h"
 #include "volume/distance.h"
 #include "volume/fit.h"

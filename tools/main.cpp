@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/heap.h"
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "tools/cli.h"
 #include "tools/console.h"
 #include "tools/help.h"

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/links.h"
 #include "tools/settings.h"
-#include "volume/image.h"
+#include "isowave/image.h"
 
 namespace isowave::tools {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::tools {
 

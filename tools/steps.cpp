@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::tools {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/vdb.h"
 
 namespace isowave {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
-#include "volume/image.h"
+#include "isowave/image.h"
 #include "volume/image_stream.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <tuple>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
 #include "volume/image_stream.h"

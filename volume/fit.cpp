@@ -12,7 +12,7 @@
 #include <numeric>
 #include <vector>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/leaf_words.h"
 #include "volume/padded_leaf.h"
 #include "volume/tiles.h"

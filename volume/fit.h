@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
 
 namespace isowave {

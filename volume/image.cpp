@@ -1,4 +1,4 @@
-#include "volume/image.h"
+#include "isowave/image.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_kind.h"
 #include "volume/image_source.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_source.h"
 
 namespace isowave::imageio {

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_header.h"
 
 namespace isowave::imageio {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <set>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_header.h"
 
 namespace isowave::imageio {

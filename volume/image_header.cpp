@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

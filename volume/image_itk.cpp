@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cstdarg>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_header.h"
 #include "volume/image_kind.h"
 

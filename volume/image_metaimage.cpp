@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_header.h"
 
 namespace isowave::imageio {

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_header.h"
 
 namespace isowave::imageio {

@@ -14,7 +14,7 @@
 #include <memory>
 #include <mutex>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_solid.h"
 #include "volume/image_stream.h"
 #include "volume/linear_transform.h"

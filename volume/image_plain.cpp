@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_source.h"
 
 namespace isowave::imageio {

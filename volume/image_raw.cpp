@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/image_source.h"
 
 namespace isowave::imageio {

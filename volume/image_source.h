@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "volume/image.h"
+#include "isowave/image.h"
 
 namespace isowave::imageio {
 

@@ -18,8 +18,8 @@
 #include <variant>
 #include <vector>
 
-#include "base/progress.h"
-#include "volume/image.h"
+#include "isowave/progress.h"
+#include "isowave/image.h"
 
 namespace isowave {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/progress.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

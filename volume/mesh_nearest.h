@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "volume/halving_tree.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave {

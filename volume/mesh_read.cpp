@@ -15,7 +15,7 @@
 #include <cstring>
 #include <limits>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/read_file.h"
 #include "volume/mesh_input.h"
 #include "volume/mesh_read_problems.h"

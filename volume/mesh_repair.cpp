@@ -17,8 +17,8 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.h"
-#include "base/progress.h"
+#include "isowave/error.h"
+#include "isowave/progress.h"
 #include "volume/mesh_input.h"
 
 namespace isowave {

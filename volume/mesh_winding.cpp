@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/progress.h"
-#include "volume/triangle_mesh.h"
+#include "isowave/progress.h"
+#include "isowave/mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
 

@@ -31,7 +31,7 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/file_bytes.h"
 #include "volume/content_hash.h"
 #include "volume/grid_bytes.h"

@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "wavelets/pyramid.h"
 
 namespace isowave::wavelets {

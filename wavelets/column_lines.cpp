@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::wavelets {
 

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/tiles.h"
 #include "wavelets/bounds.h"
 #include "wavelets/column_lines.h"

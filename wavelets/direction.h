@@ -6,7 +6,7 @@
 // the bit.
 #pragma once
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/field.h"
 
 namespace isowave::wavelets {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "wavelets/direction.h"
 
 namespace isowave::wavelets {

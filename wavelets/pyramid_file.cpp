@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/vdb_file.h"
 
 namespace isowave::wavelets {

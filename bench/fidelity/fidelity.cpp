@@ -35,7 +35,7 @@
 #include <iostream>
 #include <optional>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "base/heap.h"
 #include "marching.h"
 #include "multires.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave::bench {

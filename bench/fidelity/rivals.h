@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave::bench {
 

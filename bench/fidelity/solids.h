@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 #include "volume/vdb.h"
 
 namespace isowave::bench {

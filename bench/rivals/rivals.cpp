@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "accessory.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "chui.h"
 #include "coarser.h"
 #include "part.h"

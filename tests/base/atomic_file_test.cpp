@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "temp_folder.h"
 
 namespace isowave {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "temp_folder.h"
 
 namespace isowave {

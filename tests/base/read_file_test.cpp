@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "temp_folder.h"
 
 namespace isowave {

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/bitmap.h"
 #include "curves2d/draw.h"
 #include "curves2d/ladder.h"

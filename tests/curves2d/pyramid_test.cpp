@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "curves2d/fit.h"
 #include "curves2d/shapes.h"
 

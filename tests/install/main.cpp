@@ -2,12 +2,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "volume/image.h"
+#include "isowave/image.h"
 #include "wavelets/pyramid.h"
 
 int main() {

@@ -133,10 +133,10 @@ TEST(Layout, TheTreeIsReallyRead) {
 
 TEST(Layout, FindsIncludesHoweverTheyAreWritten) {
     const std::vector<Include> found = includesIn(
-        "#include \"base/error.h\"\n  #  include <vector>\n// #include <no>\n"
+        "#include \"isowave/error.h\"\n  #  include <vector>\n// #include <no>\n"
         "int x;\n#include\t<CGAL/AABB_tree.h> // why\n");
     ASSERT_EQ(found.size(), 3u);
-    EXPECT_EQ(found[0].name, "base/error.h");
+    EXPECT_EQ(found[0].name, "isowave/error.h");
     EXPECT_TRUE(found[0].quoted);
     EXPECT_EQ(found[1].name, "vector");
     EXPECT_EQ(found[2].name, "CGAL/AABB_tree.h");
@@ -145,7 +145,7 @@ TEST(Layout, FindsIncludesHoweverTheyAreWritten) {
 TEST(Layout, TheCheckerCanFail) {
     EXPECT_THAT(arrowComplaint("volume/fit.cpp", {"wavelets/pyramid.h", true}),
                 HasSubstr("from volume to wavelets"));
-    EXPECT_THAT(arrowComplaint("base/error.h", {"volume/field.h", true}), HasSubstr("from base to volume"));
+    EXPECT_THAT(arrowComplaint("isowave/error.h", {"volume/field.h", true}), HasSubstr("from base to volume"));
     EXPECT_THAT(arrowComplaint("wavelets/pyramid.cpp", {"polygonize/polygonize.h", true}),
                 HasSubstr("polygonize"));
     EXPECT_THAT(arrowComplaint("wavelets/interval.cpp", {"wavelets/direction.h", true}),

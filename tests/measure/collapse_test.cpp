@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "measure/shapes.h"
 #include "polygonize/collapse_choice.h"
 #include "polygonize/mesh_writer.h"

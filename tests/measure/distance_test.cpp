@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "measure/shapes.h"
 #include "polygonize/measure.h"
 

@@ -10,7 +10,7 @@
 #include "temp_folder.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "volume/image.h"
+#include "isowave/image.h"
 #include "volume/image_itk.h"
 #include "volume/mesh_input.h"
 #include "wavelets/pyramid.h"

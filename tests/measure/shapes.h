@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave::shapes {
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/fields.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"

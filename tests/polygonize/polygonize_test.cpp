@@ -11,7 +11,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "polygonize/fields.h"
 #include "polygonize/topology.h"
 #include "zoo/zoo.h"

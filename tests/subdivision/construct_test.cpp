@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/diagram_print.h"
 #include "subdivision/exact_solve.h"
 #include "tests/subdivision/refusal.h"

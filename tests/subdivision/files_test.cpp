@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/curve_files.h"
 #include "subdivision/curve_report.h"
 #include "subdivision/grid_files.h"

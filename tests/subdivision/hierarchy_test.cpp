@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/grid_files.h"
 #include "subdivision/hierarchy_edit.h"
 #include "subdivision/hierarchy_report.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <functional>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "tests/subdivision/mesh_zoo.h"
 #include "tests/temp_folder.h"
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/catmull_clark.h"
 #include "subdivision/hierarchy.h"
 #include "tests/subdivision/mesh_zoo.h"

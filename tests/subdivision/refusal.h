@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/error.h"
+#include "isowave/error.h"
 
 namespace isowave::subdivision {
 

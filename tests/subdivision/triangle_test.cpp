@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "subdivision/construct.h"
 #include "subdivision/exact_solve.h"
 #include "subdivision/hierarchy.h"

@@ -1,6 +1,6 @@
 // OutputFolder: all files change, or none.
 #include "tools/output.h"
-#include "base/error.h"
+#include "isowave/error.h"
 #include "tests/tools/run_isowave.h"
 
 namespace isowave::tools_test {

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/distance.h"
 #include "volume/mesh_checks.h"
 #include "volume/sign_tiles.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/distance.h"
 #include "zoo/zoo.h"
 

@@ -15,7 +15,7 @@
 
 #include "tests/volume/image_files.h"
 #include "tests/volume/image_itk.h"
-#include "volume/image.h"
+#include "isowave/image.h"
 #include "volume/linear_transform.h"
 
 namespace isowave {

@@ -1,4 +1,4 @@
-// A folder for a test's files, and what the tests of volume/image.h do with them.
+// A folder for a test's files, and what the tests of isowave/image.h do with them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.h"
-#include "volume/image.h"
+#include "isowave/error.h"
+#include "isowave/image.h"
 
 namespace isowave::test {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "volume/image.h"
+#include "isowave/image.h"
 #include "volume/image_itk.h"
 
 namespace isowave {

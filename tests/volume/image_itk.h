@@ -1,4 +1,4 @@
-// Images written and read by ITK itself, for the tests of volume/image.h.
+// Images written and read by ITK itself, for the tests of isowave/image.h.
 #pragma once
 
 #include <itkExtractImageFilter.h>

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/distance.h"
 #include "volume/mesh_checks.h"
 

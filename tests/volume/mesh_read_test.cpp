@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "temp_folder.h"
 #include "volume/mesh_checks.h"
 #include "volume/mesh_input.h"

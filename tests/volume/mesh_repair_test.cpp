@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/distance.h"
 #include "volume/mesh_checks.h"
 #include "volume/mesh_input.h"

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/mesh_checks.h"
 
 namespace isowave {

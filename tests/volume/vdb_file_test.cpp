@@ -17,7 +17,7 @@
 #include <random>
 #include <sstream>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
 #include "volume/grid_bytes.h"

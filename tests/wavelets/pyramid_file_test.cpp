@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.h"
+#include "isowave/error.h"
 #include "temp_folder.h"
 #include "volume/vdb_file.h"
 #include "zoo/zoo.h"

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "volume/triangle_mesh.h"
+#include "isowave/mesh.h"
 
 namespace isowave::zoo {
 

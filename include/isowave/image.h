@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "isowave/progress.h"
 #include "volume/vdb.h"
 
 namespace isowave {

@@ -3,7 +3,7 @@
 //   caller bug    assert(): the caller broke a documented REQUIRES.
 //   bad data      InputError: what came from outside is not what it must be.          exit code 3
 //   failed work   OperationError: the data was fine, the world was not (disk full).   exit code 1
-// Stopped work (the user pressed Ctrl-C) is Cancelled in base/progress.h.           exit code 130
+// Stopped work (the user pressed Ctrl-C) is Cancelled in isowave/progress.h.           exit code 130
 #pragma once
 
 #include <stdexcept>
