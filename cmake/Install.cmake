@@ -15,7 +15,7 @@ get_property(targets GLOBAL PROPERTY ISOWAVE_MODULES)
 install(TARGETS isowave ${targets} EXPORT isowaveTargets)
 install(EXPORT isowaveTargets NAMESPACE isowave:: DESTINATION ${package_dir})
 
-# Headers keep their folders: #include "wavelets/interval.h" with include/isowave on the path. Those of
+# Headers keep their folders: #include "wavelets/interval/interval.h" with include/isowave on the path. Those of
 # isowave::measure come only with the library that they promise, base/heap.h not at all: it is for our programs.
 set(left_out PATTERN "heap.h" EXCLUDE)
 if(NOT ISOWAVE_MEASURE)

@@ -5,7 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include "isowave/error.h"
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 
 // Both ways run the same passes on a row:
 //   runs       what is known, from the field or from the step

@@ -1,5 +1,5 @@
 // One direction of the planar transform: every row of a field, each of its intervals analysed on its own
-// (wavelets/interval.h), in parallel over rows. The 3D twin is wavelets/direction.h.
+// (wavelets/interval/interval.h), in parallel over rows. The 3D twin is wavelets/direction.h.
 #pragma once
 
 #include "isowave/progress.h"

@@ -10,7 +10,7 @@
 #include "volume/leaf_words.h"
 #include "volume/vdb.h"
 #include "wavelets/columns.h"
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 #include "wavelets/line_plan.h"
 
 namespace isowave::wavelets {

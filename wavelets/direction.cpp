@@ -17,7 +17,7 @@
 #include "volume/tiles.h"
 #include "wavelets/bounds.h"
 #include "wavelets/column_lines.h"
-#include "wavelets/interval_batch.h"
+#include "wavelets/interval/batch.h"
 #include "wavelets/line_values.h"
 #include "wavelets/waiting_room.h"
 

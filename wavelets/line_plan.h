@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "wavelets/interval.h"
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/interval.h"
+#include "wavelets/interval/vectors.h"
 #include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "volume/leaf_words.h"
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/vectors.h"
 #include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "wavelets/interval_batch.h"
+#include "wavelets/interval/batch.h"
 
 namespace isowave::wavelets {
 

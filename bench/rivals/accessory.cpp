@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "wavelets/interval.h"
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/interval.h"
+#include "wavelets/interval/matrices.h"
 
 namespace isowave::bench {
 namespace {

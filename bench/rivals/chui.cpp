@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/matrices.h"
 
 namespace isowave::bench {
 namespace {

@@ -42,7 +42,7 @@ const std::set<std::string> kWithoutGrids = {"base", "interval", "curves2d", "su
 
 bool startsWith(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-// The part of the project that a path like "wavelets/interval.h" belongs to; "" for none.
+// The part of the project that a path like "wavelets/interval/interval.h" belongs to; "" for none.
 std::string partOf(const std::string& path) {
     const std::string folder = path.substr(0, path.find('/'));
     if (folder == "wavelets" && startsWith(path, "wavelets/interval")) return "interval";
@@ -150,15 +150,15 @@ TEST(Layout, TheCheckerCanFail) {
                 HasSubstr("polygonize"));
     EXPECT_THAT(arrowComplaint("wavelets/interval.cpp", {"wavelets/direction.h", true}),
                 HasSubstr("interval"));
-    EXPECT_THAT(arrowComplaint("wavelets/interval.h", {"openvdb/openvdb.h", false}), HasSubstr("no grid"));
+    EXPECT_THAT(arrowComplaint("wavelets/interval/interval.h", {"openvdb/openvdb.h", false}), HasSubstr("no grid"));
     EXPECT_THAT(arrowComplaint("curves2d/rows.h", {"wavelets/pyramid.h", true}), HasSubstr("curves2d"));
-    EXPECT_THAT(arrowComplaint("subdivision/mask.h", {"wavelets/interval.h", true}),
+    EXPECT_THAT(arrowComplaint("subdivision/mask.h", {"wavelets/interval/interval.h", true}),
                 HasSubstr("subdivision"));
     EXPECT_THAT(arrowComplaint("polygonize/topology.h", {"tools/commands.h", true}), HasSubstr("tools"));
     EXPECT_THAT(arrowComplaint("volume/fit.cpp", {"fit.h", true}), HasSubstr("folder/file.h"));
 
-    EXPECT_EQ(arrowComplaint("curves2d/rows.h", {"wavelets/interval.h", true}), "");
-    EXPECT_EQ(arrowComplaint("wavelets/direction.cpp", {"wavelets/interval.h", true}), "");
+    EXPECT_EQ(arrowComplaint("curves2d/rows.h", {"wavelets/interval/interval.h", true}), "");
+    EXPECT_EQ(arrowComplaint("wavelets/direction.cpp", {"wavelets/interval/interval.h", true}), "");
     EXPECT_EQ(arrowComplaint("tools/cmd_lod.cpp", {"polygonize/measure.h", true}), "");
 }
 

@@ -10,9 +10,9 @@
 
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "wavelets/interval.h"
-#include "wavelets/interval_batch.h"
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/interval.h"
+#include "wavelets/interval/batch.h"
+#include "wavelets/interval/matrices.h"
 #include "zoo/zoo.h"
 
 namespace isowave::wavelets {

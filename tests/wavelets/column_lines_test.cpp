@@ -9,7 +9,7 @@
 
 #include "vector_widths.h"
 #include "wavelets/columns.h"
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 #include "wavelets/line_plan.h"
 #include "wavelets/line_values.h"
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/vectors.h"
 
 namespace isowave::wavelets {
 

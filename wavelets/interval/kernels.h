@@ -11,8 +11,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "wavelets/interval_tables.h"
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/tables.h"
+#include "wavelets/interval/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -1,9 +1,9 @@
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/matrices.h"
 
 #include <array>
 #include <cassert>
 
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 
 namespace isowave::wavelets {
 namespace {

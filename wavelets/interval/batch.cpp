@@ -1,11 +1,11 @@
-#include "wavelets/interval_batch.h"
+#include "wavelets/interval/batch.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "wavelets/interval_blocks.h"
-#include "wavelets/interval_kernels.h"
+#include "wavelets/interval/blocks.h"
+#include "wavelets/interval/kernels.h"
 
 // What `objdump -d` shows (g++ 12 -O3, eight lanes an instruction). applyShort's inner loop: 4 vmulpd that take their
 // second operand from memory, 4 vaddpd, 4 vbroadcastsd, two instructions of loop; all four sums in registers. solveBanded's:

@@ -1,5 +1,5 @@
-// The promises of wavelets/interval.h and interval_matrices.h, one test each.
-#include "wavelets/interval.h"
+// The promises of wavelets/interval/interval.h and interval_matrices.h, one test each.
+#include "wavelets/interval/interval.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/matrices.h"
 
 namespace isowave::wavelets {
 namespace {

@@ -13,8 +13,8 @@
 #include <array>
 #include <vector>
 
-#include "wavelets/interval.h"
-#include "wavelets/interval_matrices.h"
+#include "wavelets/interval/interval.h"
+#include "wavelets/interval/matrices.h"
 
 namespace isowave::wavelets {
 

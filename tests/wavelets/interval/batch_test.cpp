@@ -1,5 +1,5 @@
-// The promises of wavelets/interval_batch.h and waiting_room.h, for every width of vectors that this machine has.
-#include "wavelets/interval_batch.h"
+// The promises of wavelets/interval/batch.h and waiting_room.h, for every width of vectors that this machine has.
+#include "wavelets/interval/batch.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vector_widths.h"
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 #include "wavelets/waiting_room.h"
 
 namespace isowave::wavelets {

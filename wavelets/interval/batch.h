@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -1,9 +1,9 @@
-#include "wavelets/interval.h"
+#include "wavelets/interval/interval.h"
 
 #include <algorithm>
 #include <cassert>
 
-#include "wavelets/interval_kernels.h"
+#include "wavelets/interval/kernels.h"
 
 // Two paths that compute the same thing (interval_kernels.h):
 //   short  n <= kShort: one small dense matrix for each n, folded by its mirror symmetry

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "wavelets/interval_vectors.h"
+#include "wavelets/interval/vectors.h"
 
 namespace isowave::wavelets {
 

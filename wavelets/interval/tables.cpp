@@ -1,4 +1,4 @@
-#include "wavelets/interval_tables.h"
+#include "wavelets/interval/tables.h"
 
 #include <algorithm>
 
