@@ -22,7 +22,7 @@
 #include "polygonize/specks.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 #include "wavelets/pyramid.h"
 
 namespace {

@@ -12,7 +12,7 @@
 #include "tools/repair_json.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 #include "volume/vdb_file.h"
 #include "wavelets/pyramid_file.h"
 

@@ -12,12 +12,12 @@
 #include <optional>
 #include <string>
 
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 #include "tools/console.h"
 #include "tools/report.h"
 #include "tools/settings.h"
 #include "volume/field.h"
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 #include "wavelets/pyramid.h"
 
 namespace isowave::tools {

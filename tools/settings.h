@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 #include "subdivision/hierarchy_edit.h"
 
 namespace isowave::tools {

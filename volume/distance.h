@@ -9,7 +9,7 @@
 #include "isowave/progress.h"
 #include "volume/field.h"
 #include "isowave/image.h"
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 #include "isowave/mesh.h"
 
 namespace isowave {

@@ -12,7 +12,7 @@
 #include "isowave/error.h"
 #include "volume/blocks.h"
 #include "volume/distance.h"
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 #include "volume/linear_transform.h"
 #include "volume/tiles.h"
 

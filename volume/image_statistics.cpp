@@ -1,7 +1,7 @@
 // One pass over an image: range, percentiles, distinct values.
 #include <algorithm>
 
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 
 namespace isowave {
 namespace {

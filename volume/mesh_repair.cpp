@@ -19,7 +19,7 @@
 
 #include "isowave/error.h"
 #include "isowave/progress.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

@@ -42,7 +42,7 @@
 #include "polygonize/collapse_choice.h"
 #include "polygonize/level_iso.h"
 #include "polygonize/measure_sample.h"
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/refit.h"
 #include "polygonize/specks.h"

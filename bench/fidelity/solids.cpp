@@ -10,7 +10,7 @@
 #include "analytic.h"
 #include "marching.h"
 #include "volume/distance.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave::bench {
 namespace {

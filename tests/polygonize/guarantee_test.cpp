@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "polygonize/fields.h"
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 

@@ -7,7 +7,7 @@
 #include "isowave/error.h"
 #include "volume/distance.h"
 #include "volume/mesh_checks.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

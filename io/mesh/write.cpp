@@ -1,4 +1,4 @@
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "base/atomic_file.h"
 #include "isowave/error.h"
 #include "polygonize/topology.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

@@ -1,4 +1,4 @@
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave {
 using namespace imageio;

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave::imageio {
 

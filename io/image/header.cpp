@@ -1,4 +1,4 @@
-#include "volume/image_header.h"
+#include "io/image/header.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

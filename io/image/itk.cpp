@@ -12,8 +12,8 @@
 #include <cstdarg>
 
 #include "isowave/error.h"
-#include "volume/image_header.h"
-#include "volume/image_kind.h"
+#include "io/image/header.h"
+#include "io/image/kind.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

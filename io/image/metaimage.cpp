@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "isowave/error.h"
-#include "volume/image_header.h"
+#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 // is left to ITK.
 #pragma once
 
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave::imageio {
 

@@ -17,8 +17,8 @@
 
 #include "isowave/error.h"
 #include "base/read_file.h"
-#include "volume/mesh_input.h"
-#include "volume/mesh_read_problems.h"
+#include "volume/mesh_repair.h"
+#include "io/mesh/read_problems.h"
 
 namespace isowave {
 namespace {

@@ -1,10 +1,10 @@
-#include "volume/image_kind.h"
+#include "io/image/kind.h"
 
 #include <fstream>
 #include <map>
 #include <string>
 
-#include "volume/image_header.h"
+#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

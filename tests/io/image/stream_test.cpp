@@ -1,6 +1,6 @@
 // Images in slabs: the same as whole images, to the bit, for every format, slab height and solid; what is wrong is
 // found as it is there; and files far larger than 2^32 voxels.
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 
 #include <openvdb/tools/Count.h>
 

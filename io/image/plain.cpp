@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "isowave/error.h"
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave::imageio {
 namespace {

@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "volume/image_header.h"
+#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

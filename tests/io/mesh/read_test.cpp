@@ -9,7 +9,7 @@
 #include "isowave/error.h"
 #include "temp_folder.h"
 #include "volume/mesh_checks.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

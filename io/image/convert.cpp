@@ -6,7 +6,7 @@
 #include <map>
 #include <type_traits>
 
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave::imageio {
 

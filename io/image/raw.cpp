@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "isowave/error.h"
-#include "volume/image_source.h"
+#include "io/image/source.h"
 
 namespace isowave::imageio {
 SourcePtr openRaw(const std::filesystem::path& path, const ImageReadOptions& options) {

@@ -1,4 +1,4 @@
-#include "polygonize/mesh_writer.h"
+#include "io/mesh/write.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -14,7 +14,7 @@
 #include "polygonize/fields.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
-#include "volume/mesh_input.h"
+#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "isowave/error.h"
 #include "volume/image_solid.h"
-#include "volume/image_stream.h"
+#include "io/image/stream.h"
 #include "volume/linear_transform.h"
 
 namespace isowave {

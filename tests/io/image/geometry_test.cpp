@@ -5,7 +5,7 @@
 #include <array>
 
 #include "isowave/image.h"
-#include "volume/image_itk.h"
+#include "io/image/itk.h"
 
 namespace isowave {
 namespace {

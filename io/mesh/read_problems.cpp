@@ -1,4 +1,4 @@
-#include "volume/mesh_read_problems.h"
+#include "io/mesh/read_problems.h"
 
 #include <fmt/format.h>
 

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "isowave/error.h"
-#include "volume/image_kind.h"
-#include "volume/image_source.h"
+#include "io/image/kind.h"
+#include "io/image/source.h"
 
 namespace isowave {
 namespace fs = std::filesystem;

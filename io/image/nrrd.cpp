@@ -9,7 +9,7 @@
 #include <set>
 
 #include "isowave/error.h"
-#include "volume/image_header.h"
+#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
