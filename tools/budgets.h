@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "polygonize/collapse_choice.h"
+#include "simplify/budget.h"
 #include "tools/input.h"
 #include "tools/output.h"
 

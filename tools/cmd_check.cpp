@@ -1,7 +1,7 @@
 // isowave check MESH: counts what the mesh is, repairs nothing.
 #include <fmt/format.h>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "polygonize/topology.h"
 #include "tools/commands.h"
 #include "tools/input.h"

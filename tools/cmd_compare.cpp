@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "tools/commands.h"
 #include "tools/input.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "polygonize/clip.h"
-#include "polygonize/collapse.h"
+#include "simplify/collapse.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/refit.h"
 #include "polygonize/relax.h"

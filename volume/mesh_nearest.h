@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "volume/halving_tree.h"
+#include "base/halving_tree.h"
 #include "isowave/mesh.h"
 #include "volume/vdb.h"
 

@@ -7,7 +7,7 @@
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
-#include "polygonize/collapse.h"
+#include "simplify/collapse.h"
 #ifdef ISOWAVE_WITH_MESHOPTIMIZER
 #include <meshoptimizer.h>
 #endif

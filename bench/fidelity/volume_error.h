@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "solids.h"
 #include "volume/field.h"
 

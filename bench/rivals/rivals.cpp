@@ -14,7 +14,7 @@
 #include "chui.h"
 #include "coarser.h"
 #include "part.h"
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "io/mesh/write.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"

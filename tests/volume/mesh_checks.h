@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "measure/shapes.h"
+#include "simplify/shapes.h"
 #include "volume/vdb.h"
 
 namespace isowave::checks {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "isowave/progress.h"
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "isowave/mesh.h"
 
 namespace isowave {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "polygonize/collapse.h"
+#include "simplify/collapse.h"
 #include "polygonize/topology.h"
 
 namespace isowave {

@@ -1,4 +1,4 @@
-#include "polygonize/measure_sample.h"
+#include "simplify/sample.h"
 
 namespace isowave {
 

@@ -16,9 +16,9 @@
 #include <limits>
 
 #include "isowave/error.h"
-#include "polygonize/measure.h"
-#include "polygonize/measure_boxes.h"
-#include "polygonize/nearest_on_triangle.h"
+#include "simplify/measure.h"
+#include "simplify/boxes.h"
+#include "simplify/nearest_on_triangle.h"
 
 namespace isowave {
 namespace {

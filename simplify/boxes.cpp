@@ -1,4 +1,4 @@
-#include "polygonize/measure_boxes.h"
+#include "simplify/boxes.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>

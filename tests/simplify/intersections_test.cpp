@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "measure/shapes.h"
-#include "polygonize/measure.h"
+#include "simplify/shapes.h"
+#include "simplify/measure.h"
 
 namespace isowave {
 namespace {

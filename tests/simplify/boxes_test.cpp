@@ -1,5 +1,5 @@
 // TriangleBoxes finds the nearest of all triangles.
-#include "polygonize/measure_boxes.h"
+#include "simplify/boxes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "polygonize/collapse_choice.h"
+#include "simplify/budget.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "polygonize/measure_sample.h"
+#include "simplify/sample.h"
 
 namespace isowave {
 namespace {

@@ -1,8 +1,8 @@
 // Measures of solids whose measures are known, and meshes that are no solids.
 #include <gtest/gtest.h>
 
-#include "measure/shapes.h"
-#include "polygonize/measure.h"
+#include "simplify/shapes.h"
+#include "simplify/measure.h"
 #include "polygonize/topology.h"
 
 namespace isowave {

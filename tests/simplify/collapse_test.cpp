@@ -1,5 +1,5 @@
 // What Collapse and BudgetChooser promise.
-#include "polygonize/collapse.h"
+#include "simplify/collapse.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -7,8 +7,8 @@
 #include <atomic>
 
 #include "isowave/error.h"
-#include "measure/shapes.h"
-#include "polygonize/collapse_choice.h"
+#include "simplify/shapes.h"
+#include "simplify/budget.h"
 #include "io/mesh/write.h"
 #include "polygonize/polygonize.h"
 #include "temp_folder.h"

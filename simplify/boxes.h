@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "volume/halving_tree.h"
+#include "base/halving_tree.h"
 #include "isowave/mesh.h"
 
 namespace isowave {

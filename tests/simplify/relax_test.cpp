@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "polygonize/polygonize.h"
 #include "zoo/zoo.h"
 

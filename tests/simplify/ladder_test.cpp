@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "temp_folder.h"

@@ -1,6 +1,6 @@
 // Notation of Collapse: an edge with the ends v0, v1 is to become one vertex at p. Its star
 // is the triangles at v0 or v1; two of them vanish, the others become the `fan` of p.
-#include "polygonize/collapse.h"
+#include "simplify/collapse.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -20,7 +20,7 @@
 #include <optional>
 #include <queue>
 
-#include "polygonize/nearest_on_triangle.h"
+#include "simplify/nearest_on_triangle.h"
 
 namespace isowave {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <atomic>
 
-#include "polygonize/measure.h"
+#include "simplify/measure.h"
 
 namespace isowave {
 namespace {
