@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "subdivision/polygon_mesh.h"
+#include "subdivision/meshes/polygon_mesh.h"
 
 namespace isowave::bench {
 

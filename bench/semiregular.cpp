@@ -32,8 +32,8 @@
 #include <cstdlib>
 
 #include "isowave/error.h"
-#include "subdivision/hierarchy.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <ctime>
 #include <random>
 
-#include "subdivision/curve.h"
-#include "subdivision/surface.h"
+#include "subdivision/curves/curve.h"
+#include "subdivision/lattice/surface.h"
 
 namespace {
 

@@ -17,8 +17,8 @@
 
 #include "isowave/error.h"
 #include "bench/lifting.h"
-#include "subdivision/hierarchy.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <charconv>
 
 #include "isowave/error.h"
-#include "subdivision/curve_schemes.h"
-#include "subdivision/diagram_print.h"
-#include "subdivision/surface.h"
+#include "subdivision/curves/curve_schemes.h"
+#include "subdivision/filters/diagram_print.h"
+#include "subdivision/lattice/surface.h"
 
 namespace isowave::subdivision {
 

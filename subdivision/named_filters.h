@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "subdivision/construct.h"
+#include "subdivision/filters/construct.h"
 
 namespace isowave::subdivision {
 

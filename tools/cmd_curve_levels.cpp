@@ -1,6 +1,6 @@
 // isowave curve-levels INPUT -o DIR: polylines at coarser levels, with the error of each.
 #include "isowave/error.h"
-#include "subdivision/curve_report.h"
+#include "subdivision/curves/curve_report.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"

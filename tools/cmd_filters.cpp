@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"
-#include "subdivision/diagram_print.h"
+#include "subdivision/filters/diagram_print.h"
 #include "subdivision/named_filters.h"
 #include "tools/commands.h"
 #include "tools/console.h"

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "isowave/error.h"
-#include "subdivision/hierarchy_report.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy_report.h"
+#include "subdivision/meshes/mesh_files.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"

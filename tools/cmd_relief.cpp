@@ -1,7 +1,7 @@
 // isowave relief INPUT -o DIR: a height field at coarser levels of a triangular subdivision.
 #include "isowave/error.h"
-#include "subdivision/picture_files.h"
-#include "subdivision/relief_report.h"
+#include "subdivision/lattice/picture_files.h"
+#include "subdivision/lattice/relief_report.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"

@@ -1,8 +1,8 @@
 // isowave reverse MESH -o BASE: a mesh with subdivision connectivity, as a coarse base and details.
 #include "base/atomic_file.h"
 #include "isowave/error.h"
-#include "subdivision/hierarchy_report.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy_report.h"
+#include "subdivision/meshes/mesh_files.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"

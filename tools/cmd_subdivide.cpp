@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "isowave/error.h"
-#include "subdivision/hierarchy.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/mesh/write.h"
-#include "subdivision/hierarchy_edit.h"
+#include "subdivision/meshes/hierarchy_edit.h"
 
 namespace isowave::tools {
 

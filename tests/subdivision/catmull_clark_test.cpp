@@ -1,11 +1,11 @@
 // Catmull-Clark backwards, one step: the seed's numbers, every kind of vertex, all variants.
-#include "subdivision/catmull_clark.h"
+#include "subdivision/meshes/catmull_clark.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "subdivision/hierarchy.h"
+#include "subdivision/meshes/hierarchy.h"
 #include "tests/subdivision/mesh_zoo.h"
 
 namespace isowave::subdivision {

@@ -1,8 +1,8 @@
-#include "subdivision/catmull_clark_wide.h"
+#include "subdivision/meshes/catmull_clark_wide.h"
 
 #include <gtest/gtest.h>
 
-#include "subdivision/construct.h"
+#include "subdivision/filters/construct.h"
 #include "tests/subdivision/mesh_zoo.h"
 
 namespace isowave::subdivision {

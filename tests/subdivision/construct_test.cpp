@@ -1,6 +1,6 @@
 // Filters of masks, in exact rationals: each number was published (B, O) or derived by hand from the
 // identities.
-#include "subdivision/construct.h"
+#include "subdivision/filters/construct.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "isowave/error.h"
-#include "subdivision/diagram_print.h"
-#include "subdivision/exact_solve.h"
+#include "subdivision/filters/diagram_print.h"
+#include "subdivision/filters/exact_solve.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {

@@ -1,4 +1,4 @@
-#include "subdivision/curve.h"
+#include "subdivision/curves/curve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "subdivision/curve_files.h"
+#include "subdivision/curves/curve_files.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "isowave/error.h"
-#include "subdivision/curve_files.h"
-#include "subdivision/curve_report.h"
-#include "subdivision/grid_files.h"
-#include "subdivision/picture_files.h"
-#include "subdivision/relief.h"
-#include "subdivision/relief_report.h"
+#include "subdivision/curves/curve_files.h"
+#include "subdivision/curves/curve_report.h"
+#include "subdivision/lattice/grid_files.h"
+#include "subdivision/lattice/picture_files.h"
+#include "subdivision/lattice/relief.h"
+#include "subdivision/lattice/relief_report.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {

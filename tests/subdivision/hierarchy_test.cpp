@@ -1,5 +1,5 @@
 // Base and details: round trips of whole meshes, the file, creases by angle, editing, thresholding.
-#include "subdivision/hierarchy.h"
+#include "subdivision/meshes/hierarchy.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "isowave/error.h"
-#include "subdivision/grid_files.h"
-#include "subdivision/hierarchy_edit.h"
-#include "subdivision/hierarchy_report.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/lattice/grid_files.h"
+#include "subdivision/meshes/hierarchy_edit.h"
+#include "subdivision/meshes/hierarchy_report.h"
+#include "subdivision/meshes/mesh_files.h"
 #include "tests/subdivision/mesh_zoo.h"
 #include "tests/temp_folder.h"
 

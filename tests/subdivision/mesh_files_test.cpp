@@ -1,5 +1,5 @@
 // Polygon meshes: what is wrong with them, who is next to whom, and their files.
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/mesh_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "subdivision/polygon_mesh.h"
+#include "subdivision/meshes/polygon_mesh.h"
 
 namespace isowave::subdivision::mesh_zoo {
 

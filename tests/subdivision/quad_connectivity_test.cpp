@@ -1,12 +1,12 @@
 // Finding the coarse mesh inside a fine one that says nothing about how it was made.
-#include "subdivision/quad_connectivity.h"
+#include "subdivision/meshes/quad_connectivity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "isowave/error.h"
-#include "subdivision/catmull_clark.h"
-#include "subdivision/hierarchy.h"
+#include "subdivision/meshes/catmull_clark.h"
+#include "subdivision/meshes/hierarchy.h"
 #include "tests/subdivision/mesh_zoo.h"
 
 namespace isowave::subdivision {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "bench/lifting.h"
-#include "subdivision/hierarchy.h"
-#include "subdivision/mesh_files.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
 
 namespace isowave::subdivision {
 namespace {

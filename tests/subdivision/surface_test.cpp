@@ -1,4 +1,4 @@
-#include "subdivision/surface.h"
+#include "subdivision/lattice/surface.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,12 +12,12 @@
 #include <set>
 
 #include "isowave/error.h"
-#include "subdivision/construct.h"
-#include "subdivision/exact_solve.h"
-#include "subdivision/hierarchy.h"
-#include "subdivision/surface.h"
-#include "subdivision/triangle_coarsen.h"
-#include "subdivision/triangle_step.h"
+#include "subdivision/filters/construct.h"
+#include "subdivision/filters/exact_solve.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/lattice/surface.h"
+#include "subdivision/meshes/triangle_coarsen.h"
+#include "subdivision/meshes/triangle_step.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {

@@ -1,0 +1,39 @@
+// Polygon meshes in files: OBJ, OFF, PLY, read and written with every digit of a double. (CGAL's readers say only
+// yes or no, and know no creases.)
+//
+// Creases and pinned vertices have no place of their own in these formats. In all three they can be written as
+// OpenSubdiv's regression shapes do, in OBJ as a line, in OFF and PLY as a comment (`#`, `comment`) of the same text:
+//     t crease 2/1/0 V1 V2 SHARPNESS        an edge, by its two vertices *counted from 0*
+//     t corner 1/1/0 V SHARPNESS            a pinned vertex
+// Any other `t` line of OBJ is skipped: t interpolateboundary too, since boundaries are always curves of their own
+// and their corners always stay.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "subdivision/meshes/polygon_mesh.h"
+
+namespace isowave::subdivision {
+
+enum class PolygonFormat { obj, off, ply };
+
+// By extension, in any case. Throws InputError naming the three for another one.
+PolygonFormat polygonFormatOf(const std::filesystem::path& path);
+
+// Reads positions, faces and creases; texture coordinates, normals, colours, groups and materials are passed over.
+// PLY: ASCII or binary of either byte order. OBJ: negative indices count from the end. Nothing is merged, turned or
+// checked beyond the file itself: requireManifold() does that.
+// Throws InputError with the line (byte, element) and what was expected: no such file, truncated, not a number,
+// a vertex that is not there.
+PolygonMesh readPolygonMesh(const std::filesystem::path& path);
+PolygonMesh parsePolygonMesh(std::string_view bytes, PolygonFormat format, const std::string& name);
+
+// The shortest decimals that read back to the same bits (OBJ, OFF), or float64 (PLY, binary little-endian).
+std::string polygonMeshBytes(const PolygonMesh& mesh, PolygonFormat format);
+
+// Appears whole or not at all. Throws OperationError.
+void writePolygonMesh(const std::filesystem::path& path, const PolygonMesh& mesh);
+
+}  // namespace isowave::subdivision
