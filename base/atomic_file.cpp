@@ -6,13 +6,13 @@
 #include <cerrno>
 #include <cstring>
 
-#include "isowave/error.h"
 #include "base/links.h"
+#include "isowave/error.h"
 
 namespace isowave {
 
 namespace {
-constexpr std::streamsize kBlockBytes = 1 << 18, kBeginEach = 8 << 20;
+constexpr std::streamsize kBlockBytes = 1 << 18, kWriteBackEach = 8 << 20;
 }
 
 AtomicFile::Buffer::Buffer() : block_(std::make_unique_for_overwrite<char[]>(kBlockBytes)) {
@@ -24,7 +24,7 @@ AtomicFile::Buffer::~Buffer() {
     if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void AtomicFile::Buffer::watchDisk(const std::filesystem::path& file) {
+void AtomicFile::Buffer::writeBackEarly(const std::filesystem::path& file) {
     descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
 }
 
@@ -34,12 +34,12 @@ bool AtomicFile::Buffer::waitForDisk() const {
 
 std::streamsize AtomicFile::Buffer::xsputn(const char* bytes, std::streamsize count) {
     const std::streamsize written = std::filebuf::xsputn(bytes, count);
-    notBegun_ += written;
-    if (descriptor_ >= 0 && notBegun_ >= kBeginEach) {
+    notStarted_ += written;
+    if (descriptor_ >= 0 && notStarted_ >= kWriteBackEach) {
 #ifdef __linux__
         ::sync_file_range(descriptor_, 0, /*to the end*/ 0, SYNC_FILE_RANGE_WRITE);
 #endif
-        notBegun_ = 0;
+        notStarted_ = 0;
     }
     return written;
 }
@@ -56,7 +56,7 @@ AtomicFile::AtomicFile(std::filesystem::path place) : place_(behindLinks(place))
     if (!buffer_.open(temporary_, std::ios::binary | std::ios::trunc | std::ios::out))
         throw OperationError(place_.string(), std::string("cannot write here (") + std::strerror(errno) +
                                                   "); check that the folder exists and is writable");
-    if (!direct_) buffer_.watchDisk(temporary_);
+    if (!direct_) buffer_.writeBackEarly(temporary_);
     stream_.exceptions(std::ios::badbit | std::ios::failbit);
 }
 

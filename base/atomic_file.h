@@ -1,5 +1,5 @@
-// A file that appears whole or not at all: written under a temporary name beside its place, renamed at the
-// end.
+// A file that appears whole or not at all: it is written under a temporary name beside its place and renamed
+// at the end.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,9 @@ namespace isowave {
 // Without commit() (an exception, a cancelled job) the temporary file is removed and the place is untouched.
 class AtomicFile {
   public:
-    // Opens PLACE.part-PID for writing; links are followed. Throws OperationError when that fails (folder missing or
-    // unwritable). Where PLACE is a device or a pipe (/dev/null, /dev/stdout) it is written to directly.
+    // Opens PLACE.part-PID for writing; links are followed. Throws OperationError when that fails (folder
+    // missing or unwritable). Where PLACE is a device or a pipe (/dev/null, /dev/stdout) it is written to
+    // directly.
     explicit AtomicFile(std::filesystem::path place);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -30,15 +31,15 @@ class AtomicFile {
     void commit();
 
   private:
-    // Has the disk begin with what was written while the rest is being made, for commit() waits for the disk (137 MB: 120 ms
-    // of 440), and gathers small writes.
+    // Gathers small writes, and starts write-back while the rest of the file is still being computed:
+    // commit() waits until all is on the disk, which takes 120 ms less of 440 for 137 MB.
     class Buffer : public std::filebuf {
       public:
         Buffer();
         ~Buffer() override;
-        // From now on the disk begins early. Where this does not succeed it begins, and ends, when it likes.
-        void watchDisk(const std::filesystem::path& file);
-        // Returns when all that was written to the file is on the disk; false where the disk is full or broken.
+        // Starts asynchronous write-back from now on, so that commit() waits less. Best effort.
+        void writeBackEarly(const std::filesystem::path& file);
+        // Returns when all that was written is on the disk; false where the disk is full or broken.
         bool waitForDisk() const;
 
       protected:
@@ -47,7 +48,7 @@ class AtomicFile {
       private:
         std::unique_ptr<char[]> block_;
         int descriptor_ = -1;
-        std::streamsize notBegun_ = 0;  // bytes
+        std::streamsize notStarted_ = 0;  // bytes whose write-back was not asked for yet
     };
 
     std::filesystem::path place_, temporary_;

@@ -10,26 +10,36 @@
 
 namespace isowave {
 
-FileBytes::FileBytes(const std::filesystem::path& path, std::string_view expected) {
+FileDescriptor::FileDescriptor(const std::filesystem::path& path, std::string_view expected) {
     const std::string name = path.string();
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
-    if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(name, fmt::format("is not a file; expected {}", expected));
+    if (std::filesystem::is_directory(path, error))
+        throw InputError(name, fmt::format("is a folder; expected {}", expected));
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor_ < 0) throw InputError(name, "cannot be opened; check its permissions");
+}
+
+FileDescriptor::~FileDescriptor() { ::close(descriptor_); }
+
+FileBytes::FileBytes(const std::filesystem::path& path, std::string_view expected) : file_(path, expected) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError(path.string(), fmt::format("is not a file; expected {}", expected));
     size_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
 }
 
-FileBytes::~FileBytes() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+bool FileBytes::isHole(std::int64_t begin, std::int64_t end) const {
+    if (::lseek(file_.get(), 0, SEEK_END) < end) return false;
+    const off_t data = ::lseek(file_.get(), begin, SEEK_DATA);
+    return data < 0 ? errno == ENXIO : data >= end;
 }
 
 std::size_t FileBytes::read(std::int64_t at, char* to, std::size_t count) const {
     std::size_t done = 0;
     while (done < count) {
         const ssize_t got =
-            ::pread(descriptor_, to + done, count - done, at + static_cast<std::int64_t>(done));
+            ::pread(file_.get(), to + done, count - done, at + static_cast<std::int64_t>(done));
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) break;
         done += static_cast<std::size_t>(got);

@@ -1,4 +1,4 @@
-// The bytes of a file, for several readers at once.
+// The bytes of a file, for several threads at once.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,43 @@
 
 namespace isowave {
 
-class FileBytes {
+// A file opened for reading. Every reader that gives its own messages begins with it.
+class FileDescriptor {
   public:
-    // expected: what the file should be, "a mesh file". Throws InputError: missing, a folder or a device, not to be opened.
-    FileBytes(const std::filesystem::path& path, std::string_view expected);
-    ~FileBytes();
-    FileBytes(const FileBytes&) = delete;
-    FileBytes& operator=(const FileBytes&) = delete;
+    // expected: what the file should be, "a mesh file". Throws InputError, one line, when there is nothing of
+    // that name, when it is a folder, and when it may not be opened.
+    FileDescriptor(const std::filesystem::path& path, std::string_view expected);
+    ~FileDescriptor();
+    FileDescriptor(const FileDescriptor&) = delete;
+    FileDescriptor& operator=(const FileDescriptor&) = delete;
 
-    std::int64_t size() const { return size_; }
-    // Bytes [at, at + count) as far as there are any; returns how many. Any number of threads may call it at once.
-    std::size_t read(std::int64_t at, char* to, std::size_t count) const;
+    int get() const { return descriptor_; }
 
   private:
-    int descriptor_ = -1;
+    int descriptor_;
+};
+
+class FileBytes {
+  public:
+    // Throws InputError as FileDescriptor does, and for a device or a pipe.
+    FileBytes(const std::filesystem::path& path, std::string_view expected);
+
+    std::int64_t size() const { return size_; }
+    // Bytes [at, at + count) as far as there are any; returns how many. Any number of threads may call it at
+    // once.
+    std::size_t read(std::int64_t at, char* to, std::size_t count) const;
+    // Whether the file system says that bytes begin .. end - 1 were never written (a hole of a sparse file:
+    // all 0).
+    bool isHole(std::int64_t begin, std::int64_t end) const;
+
+  private:
+    FileDescriptor file_;
     std::int64_t size_ = 0;
 };
 
-// A stream over them with a place and a buffer of its own, that throws std::ios_base::failure where it is asked for
-// bytes that are not there. std::ifstream asks the system where it is at each tellg() and empties its buffer at each
-// seekg(); OpenVDB does both once a leaf. Here a move within the buffer is a subtraction.
+// A stream over a FileBytes, with a position and a buffer of its own. It throws std::ios_base::failure where
+// it is asked for bytes that are not there. std::ifstream makes a system call at each tellg() and empties its
+// buffer at each seekg(), and OpenVDB calls both once a leaf; here a move within the buffer is a subtraction.
 class FileStream : public std::istream {
   public:
     // REQUIRES: bytes outlives the stream.

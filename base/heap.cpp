@@ -11,8 +11,8 @@
 #endif
 
 #ifdef ISOWAVE_WITH_MIMALLOC
-// mimalloc is C: its own operator new ends the program where memory does not suffice. These throw; the other forms of new
-// and all of delete are its own.
+// mimalloc is C: its own operator new ends the program where memory does not suffice. These throw; the other
+// forms of new and all of delete are its own.
 namespace {
 
 // Let go of at the first failure: a tree of OpenVDB is destroyed by tasks, and they need memory too.

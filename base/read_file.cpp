@@ -1,22 +1,35 @@
 #include "base/read_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <fstream>
+#include <algorithm>
+#include <cerrno>
 
+#include "base/file_bytes.h"
 #include "isowave/error.h"
 
 namespace isowave {
+namespace {
+
+// To the end, from pipes too.
+std::string everyByte(const FileDescriptor& file) {
+    constexpr std::size_t kFirstBlock = 1 << 20;
+    std::string bytes;
+    for (std::size_t size = 0;;) {
+        if (size == bytes.size()) bytes.resize(std::max(kFirstBlock, 2 * size));
+        const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got > 0) size += static_cast<std::size_t>(got);
+        if (got <= 0) return bytes.resize(size), bytes;
+    }
+}
+
+}  // namespace
 
 std::string readFile(const std::filesystem::path& path, std::string_view expected) {
     const std::string name = path.string();
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
-    if (std::filesystem::is_directory(path, error))
-        throw InputError(name, fmt::format("is a folder; expected {}", expected));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw InputError(name, "cannot be opened; check its permissions");
-    std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    std::string bytes = everyByte(FileDescriptor(path, expected));
     if (bytes.empty()) throw InputError(name, fmt::format("is empty; expected {}", expected));
     if (bytes.starts_with("\x1f\x8b")) throw InputError(name, "is compressed by gzip; gunzip it first");
     return bytes;

@@ -7,8 +7,8 @@
 
 namespace isowave {
 
-// expected: what the file should be, "a mesh file". Throws InputError when nothing has that name, when it is a
-// folder, may not be opened, is empty, or is compressed by gzip.
+// expected: what the file should be, "a mesh file". Throws InputError when nothing has that name, when it is
+// a folder, may not be opened, is empty, or is compressed by gzip.
 std::string readFile(const std::filesystem::path& path, std::string_view expected);
 
 }  // namespace isowave

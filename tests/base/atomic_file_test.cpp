@@ -34,7 +34,8 @@ TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneFails) {
     EXPECT_EQ(std::filesystem::file_size(folder / "a.txt"), 3u);
 }
 
-// Larger than what the disk is asked to begin with at a time; a byte at the front is written again at the end.
+// Larger than what the disk is asked to begin with at a time; a byte at the front is written again at the
+// end.
 TEST(AtomicFile, HoldsEveryByteOfALargeFile) {
     const test::TempFolder folder("large");
     std::string expected;

@@ -35,6 +35,26 @@ TEST(FileBytes, GivesWhatThereIs) {
     EXPECT_EQ(bytes.read(1000, got.data(), 300), 0u);
 }
 
+TEST(FileBytes, KnowsTheHolesOfASparseFile) {
+    const test::TempFolder folder;
+    constexpr std::int64_t kMiddle = 1 << 20, kSize = 2 << 20;
+    {
+        std::ofstream file(folder / "sparse", std::ios::binary);
+        file.seekp(kMiddle);
+        file << std::string(kSize - kMiddle, 'x');
+    }
+    const FileBytes bytes(folder / "sparse", "a test file");
+    EXPECT_FALSE(bytes.isHole(kMiddle, kSize));
+    EXPECT_FALSE(bytes.isHole(0, kSize));
+    EXPECT_FALSE(bytes.isHole(0, kSize + 1)) << "beyond the end";
+    // Where the file system has no holes the answer is false, which is always safe.
+    char first = 'x';
+    if (bytes.isHole(0, kMiddle / 2)) {
+        EXPECT_EQ(bytes.read(0, &first, 1), 1u);
+        EXPECT_EQ(first, '\0');
+    }
+}
+
 TEST(FileBytes, RefusesWhatIsNotAFile) {
     const test::TempFolder folder;
     EXPECT_THROW(FileBytes(folder / "none", "a test file"), InputError);
@@ -42,7 +62,7 @@ TEST(FileBytes, RefusesWhatIsNotAFile) {
         FileBytes(folder.path(), "a test file");
         FAIL();
     } catch (const InputError& e) {
-        EXPECT_NE(std::string(e.what()).find("is not a file; expected a test file"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("is a folder; expected a test file"), std::string::npos);
     }
 }
 

@@ -1,8 +1,10 @@
 #include "base/read_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
+#include <thread>
 
 #include "isowave/error.h"
 #include "temp_folder.h"
@@ -24,6 +26,24 @@ TEST(ReadFile, GivesEveryByte) {
     const std::string bytes("a\0\r\n\xff", 5);
     std::ofstream(folder / "a", std::ios::binary) << bytes;
     EXPECT_EQ(readFile(folder / "a", "a mesh file"), bytes);
+}
+
+TEST(ReadFile, GivesFilesLargerThanAnyBuffer) {
+    const test::TempFolder folder("large");
+    std::string bytes(5'000'000, 'x');
+    for (std::size_t i = 0; i < bytes.size(); i += 997) bytes[i] = static_cast<char>(i % 251);
+    std::ofstream(folder / "a", std::ios::binary) << bytes;
+    EXPECT_TRUE(readFile(folder / "a", "a mesh file") == bytes);
+}
+
+TEST(ReadFile, ReadsPipes) {
+    const test::TempFolder folder("pipe");
+    const std::filesystem::path pipe = folder / "p";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << std::string(200'000, 'y'); });
+    const std::string bytes = readFile(pipe, "a mesh file");
+    writer.join();
+    EXPECT_TRUE(bytes == std::string(200'000, 'y'));
 }
 
 TEST(ReadFile, SaysWhatStandsWhereAFileShould) {
