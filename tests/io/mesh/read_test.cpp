@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "temp_folder.h"
 #include "volume/mesh_checks.h"
@@ -277,6 +278,17 @@ TEST(ReadMesh, SaysWhichCoordinateIsNotFinite) {
     EXPECT_REFUSED("a.stl", binaryStl(mesh), "coordinate inf is not finite");
 }
 
+TEST(ReadMesh, TakesNumbersTooSmallForZeroAndTooLargeForInfinite) {
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "v 0 1 0", "v -1e-999 +1 1E-400")));
+    expectTetrahedron(
+        readBytes("a.ply", replaced(replaced(kTetrahedronPly, "double y", "float y"), "0 1 0", "0 1 1e-99")));
+    for (const char* large : {"1e400", "-1.5E999", "1e+400"})
+        EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "v 0 1 0", std::string("v 0 1 ") + large),
+                       std::string("line 4: coordinate ") + large + " is not finite");
+    EXPECT_REFUSED("a.ply", replaced(replaced(kTetrahedronPly, "double y", "float y"), "0 1 0", "0 1e40 0"),
+                   "line 12: 'y' of element 'vertex' is not finite");
+}
+
 TEST(ReadMesh, RefusesCoordinatesBeyondReason) {
     TriangleMesh mesh = kBall;
     mesh.points[7][2] = 3e30;
@@ -322,6 +334,86 @@ TEST(ReadMesh, UnderstandsWhatExportersWrite) {
     EXPECT_EQ(readBytes("a.stl", text + text).triangles.size(), 8u);  // two solids
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     EXPECT_EQ(readBytes("a.stl", text).triangles.size(), 4u);
+}
+
+std::string withLineEnd(const std::string& text, const std::string& end) {
+    std::string result;
+    for (const char c : text) result += c == '\n' ? end : std::string(1, c);
+    return result;
+}
+
+std::string asciiStl() {
+    std::ifstream file(kData / "broken_stl" / "wrongNormal.ascii.stl");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+TEST(ReadMesh, ReadsTextHoweverItIsEncodedAndBroken) {
+    for (const auto& [name, text] : {std::pair{"a.obj", kTetrahedronObj},
+                                     {"a.off", kTetrahedronOff},
+                                     {"a.ply", kTetrahedronPly},
+                                     {"a.stl", asciiStl()}}) {
+        const TriangleMesh mesh = readBytes(name, text);
+        for (const char* end : {"\r\n", "\r", " \t\n"})
+            EXPECT_EQ(readBytes(name, withLineEnd(text, end)).points, mesh.points) << name;
+        EXPECT_EQ(readBytes(name, "\xef\xbb\xbf" + text).triangles, mesh.triangles) << name;
+        for (const char* mark : {"\xff\xfe", "\xfe\xff"})
+            EXPECT_REFUSED(name, mark + withLineEnd(text, std::string("\0\n", 2)), "is text in UTF-16");
+    }
+}
+
+TEST(ReadMesh, JoinsContinuedLinesOfObjButNotComments) {
+    const std::string continued = withLineEnd(kTetrahedronObj.substr(kTetrahedronObj.find('f')), " # c\n");
+    expectTetrahedron(readBytes("a.obj", kTetrahedronObj.substr(0, kTetrahedronObj.find('f')) + continued));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "v 1 0 0", "v \\\r\n1 0\\ \n\\\n 0")));
+    expectTetrahedron(readBytes("a.obj", replaced(kTetrahedronObj, "v 0 0 0", "# C:\\parts\\\nv 0 0 0")));
+    // Lines are counted as an editor does.
+    EXPECT_REFUSED("a.obj", replaced(kTetrahedronObj, "f 1 3 2\nf 1 2 4", "f 1 \\\n3 2\nf 1 2 x"),
+                   "line 8: corner 'x'");
+}
+
+TEST(ReadMesh, TakesLineBreaksOfOffForBlanks) {
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "3 0 2 1", "3\n0\n2 1")));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "1 0 0", "1\n0 # x\n\n0")));
+    expectTetrahedron(readBytes("a.off", withLineEnd(kTetrahedronOff, " ")));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "4 4 0", "4 4")));
+    expectTetrahedron(
+        readBytes("a.off", replaced(replaced(kTetrahedronOff, "OFF", "4OFF"), "0 0 0\n1 0 0\n0 1 0\n0 0 1",
+                                    "0 0 0 1\n2 0 0 2\n0 3 0 3\n0 0 1 1")));
+    // A coordinate is gone, a line is there twice: as many words as there should be, but not by accident.
+    EXPECT_REFUSED("a.off",
+                   replaced(replaced(kTetrahedronOff, "1 0 0\n0 1 0", " 1 0"), "3 0 2 1", "3 0 2 1\n3 0 2 1"),
+                   "line 4: a point needs three coordinates, found 2");
+}
+
+TEST(ReadMesh, PassesOverWhatPlyRowsHoldBesides) {
+    expectTetrahedron(readBytes("a.ply", replaced(kTetrahedronPly, "3 0 2 1", "3 0 2 1 0.5 0.5")));
+    expectTetrahedron(readBytes(
+        "a.ply", replaced(replaced(kTetrahedronPly, "double z\n", "double z\nproperty float nx\n"),
+                          "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", "0 0 0 nan\n1 0 0 0\n0 1 0 0\n0 0 1 0\n")));
+    expectTetrahedron(readBytes("a.ply", replaced(kTetrahedronPly, "uchar int", "uint short")));
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "double y", "double x"), "lack x, y or z");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "double z\n", "double z\nproperty double z\n"),
+                   "twice");
+}
+
+TEST(ReadMesh, DoesNotLoseFacetsSilently) {
+    const std::string text = asciiStl();
+    EXPECT_REFUSED("a.stl", replaced(text, "facet normal", "fcet normal"), "'fcet' is no STL keyword");
+    EXPECT_REFUSED("a.stl", replaced(text, "endfacet", ""), "has no 'endfacet'");
+    EXPECT_REFUSED("a.stl", "solid a\n" + text, "line 2: 'solid' inside the solid of line 1");
+}
+
+// Counts in a header are believed when the file holds as much, and not before: neither memory nor time is spent on them.
+TEST(ReadMesh, BelievesNoCount) {
+    const std::string many = "4000000000";
+    EXPECT_REFUSED("a.off", replaced(kTetrahedronOff, "4 4 0", many + " 4 0"), "ends after 8");
+    EXPECT_REFUSED("a.off", replaced(kTetrahedronOff, "4 4 0", "4 " + many + " 0"), "ends after 4");
+    EXPECT_REFUSED("a.off", replaced(kTetrahedronOff, "3 0 2 1", many + " 0 2 1"), "but lists 3");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "vertex 4", "vertex " + many), "ends in number 9");
+    EXPECT_REFUSED("a.ply", replaced(kTetrahedronPly, "3 0 2 1", many + " 0 2 1"),
+                   "line 14: element 'face' lacks");
+    EXPECT_REFUSED("a.ply", replaced(binaryPly(kBall), "face 80", "face " + many), "ends in number 81");
+    EXPECT_REFUSED("a.ply", replaced(binaryPly(kBall), "uchar int", "uint int"), "it is truncated");
 }
 
 TEST(ReadMesh, CutsPolygonsIntoFans) {

@@ -1,4 +1,5 @@
 #include "io/mesh/write.h"
+#include "io/mesh/equal_points.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -10,11 +11,11 @@
 #include <numbers>
 #include <sstream>
 
+#include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "polygonize/fields.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
-#include "volume/mesh_repair.h"
 
 namespace isowave {
 namespace {

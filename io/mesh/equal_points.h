@@ -1,0 +1,23 @@
+// Points that are equal to the last digit made one, as a reader of STL, which has no indices, must.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "isowave/mesh.h"
+
+namespace isowave {
+
+// The points that are no copies, by their index, in order; and for each point which of them it is a copy of or is itself:
+// points[i] equals points[firsts[which[i]]] (-0 equals 0). One pass, whatever the points.
+struct DistinctPoints {
+    std::vector<std::uint32_t> firsts, which;
+};
+DistinctPoints distinctPoints(std::span<const Point> points);
+
+// Merges points with equal coordinates, as a reader of STL must. Points come in the order of their first
+// appearance, with the normal of the first; triangles keep their number and order.
+TriangleMesh mergeEqualPoints(const TriangleMesh& mesh);
+
+}  // namespace isowave
