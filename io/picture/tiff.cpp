@@ -1,0 +1,371 @@
+#include "io/picture/tiff.h"
+
+#include <fmt/format.h>
+#include <tiffio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+#include "isowave/error.h"
+
+namespace isowave {
+namespace {
+
+// ---- libtiff reads from memory and tells its errors to the file that they are about
+
+struct TiffBytes {
+    std::string_view bytes;
+    std::size_t at = 0;
+    char error[160] = "";  // the first one
+};
+
+TiffBytes& fileOf(thandle_t handle) { return *static_cast<TiffBytes*>(handle); }
+
+tmsize_t onRead(thandle_t handle, void* to, tmsize_t count) {
+    TiffBytes& file = fileOf(handle);
+    const std::size_t left = file.bytes.size() - std::min(file.at, file.bytes.size()),
+                      got = std::min(left, static_cast<std::size_t>(count));
+    std::memcpy(to, file.bytes.data() + (file.bytes.size() - left), got);
+    file.at += got;
+    return static_cast<tmsize_t>(got);
+}
+tmsize_t onWrite(thandle_t, void*, tmsize_t) { return 0; }
+toff_t onSeek(thandle_t handle, toff_t offset, int from) {
+    TiffBytes& file = fileOf(handle);
+    file.at = offset + (from == SEEK_CUR ? file.at : from == SEEK_END ? file.bytes.size() : 0);
+    return file.at;
+}
+int onClose(thandle_t) { return 0; }
+toff_t onSize(thandle_t handle) { return fileOf(handle).bytes.size(); }
+
+int onError(TIFF*, void* file, const char*, const char* format, va_list arguments) {
+    char* error = static_cast<TiffBytes*>(file)->error;
+    if (!*error) std::vsnprintf(error, sizeof TiffBytes::error, format, arguments);
+    return 1;  // nobody else need know
+}
+int onWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+
+using TiffPtr = std::unique_ptr<TIFF, void (*)(TIFF*)>;
+
+// ---- what the tags of a page say
+
+// What one byte can become.
+double mostExpansion(int compression, double width) {
+    switch (compression) {
+        case COMPRESSION_NONE:
+            return 1;
+        case COMPRESSION_PACKBITS:
+            return 64;
+        case COMPRESSION_LZW:
+            return 4096;  // a string of the whole table for a code of more than a byte
+        case COMPRESSION_DEFLATE:
+        case COMPRESSION_ADOBE_DEFLATE:
+            return 1032;
+        case COMPRESSION_JPEG:
+        case COMPRESSION_OJPEG:
+            return 2048;  // a bit for 64 samples, of which chroma has a quarter
+        case COMPRESSION_CCITTRLE:
+        case COMPRESSION_CCITTRLEW:
+        case COMPRESSION_CCITTFAX3:
+        case COMPRESSION_CCITTFAX4:
+            return width;  // a bit for a row that is like the one above
+        default:
+            return 65536;
+    }
+}
+
+std::optional<ValueType> typeFor(int bits, int format) {
+    if (format == SAMPLEFORMAT_IEEEFP)
+        return bits == 32   ? std::optional(ValueType::float32)
+               : bits == 64 ? std::optional(ValueType::float64)
+                            : std::nullopt;
+    if (format > SAMPLEFORMAT_VOID) return std::nullopt;
+    const bool isSigned = format == SAMPLEFORMAT_INT;
+    switch (bits) {
+        case 1:
+        case 2:
+        case 4:
+            return isSigned ? std::nullopt : std::optional(ValueType::uint8);
+        case 8:
+            return isSigned ? ValueType::int8 : ValueType::uint8;
+        case 16:
+            return isSigned ? ValueType::int16 : ValueType::uint16;
+        case 32:
+            return isSigned ? ValueType::int32 : ValueType::uint32;
+        case 64:
+            return isSigned ? ValueType::int64 : ValueType::uint64;
+        default:
+            return std::nullopt;
+    }
+}
+
+// A strip or a tile: where it lies, and its decoded size.
+struct Block {
+    std::size_t left = 0, top = 0, width = 0, height = 0, rowBytes = 0;
+    std::size_t plane = 0;
+};
+
+class TiffReader {
+  public:
+    TiffReader(std::string_view bytes, const std::string& name)
+        : name_(name), file_{bytes}, tiff_(open(), TIFFClose) {
+        if (!tiff_) giveUp();
+    }
+
+    Picture picture() {
+        Picture picture;
+        picture.pages = countPages();
+        picture.width = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));
+        picture.height = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGELENGTH));
+        picture.bits = tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE);
+        samples_ = tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
+        photometric_ = tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        const auto code = tag<std::uint16_t>(TIFFTAG_COMPRESSION);
+        if (!TIFFIsCODECConfigured(code))
+            throw InputError(name_,
+                             fmt::format("cannot be read as a picture: its compression {} is unknown", code));
+        const auto type = typeFor(picture.bits, tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT));
+        if (!type || !isDirect(picture.bits)) return shown(std::move(picture));
+        picture.type = *type;
+        takeChannels(picture);
+        allocate(picture, name_, bitsEach(picture), file_.bytes.size(), expansion());
+        readBlocks(picture);
+        finish(picture);
+        return picture;
+    }
+
+  private:
+    TIFF* open() {
+        const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
+                                                                                   TIFFOpenOptionsFree);
+        if (!options) return nullptr;
+        TIFFOpenOptionsSetErrorHandlerExtR(options.get(), onError, &file_);
+        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), onWarning, nullptr);
+        // m: not mapped.
+        return TIFFClientOpenExt(name_.c_str(), "rm", &file_, onRead, onWrite, onSeek, onClose, onSize,
+                                 nullptr, nullptr, options.get());
+    }
+    [[noreturn]] void giveUp() const {
+        throw InputError(name_, std::string("cannot be read as a picture: ") +
+                                    (*file_.error ? file_.error : "it is damaged or truncated"));
+    }
+
+    template <class T>
+    T tag(std::uint32_t which, T value = {}) const {
+        TIFFGetFieldDefaulted(tiff_.get(), which, &value);
+        return value;
+    }
+    double expansion() const {
+        return mostExpansion(tag<std::uint16_t>(TIFFTAG_COMPRESSION), tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));
+    }
+    bool isSeparate() const { return tag<std::uint16_t>(TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE; }
+    int bitsEach(const Picture& picture) const { return picture.bits * samples_; }
+
+    int countPages() {
+        int pages = 0;
+        do {
+            const auto kind = tag<std::uint32_t>(TIFFTAG_SUBFILETYPE);
+            pages += (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0;
+        } while (TIFFReadDirectory(tiff_.get()));
+        if (*file_.error || !TIFFSetDirectory(tiff_.get(), 0)) giveUp();
+        return std::max(1, pages);
+    }
+
+    // Whether samples are grey values, colours or places in a palette as they stand.
+    bool isDirect(int bits) const {
+        if (photometric_ == PHOTOMETRIC_PALETTE) return bits <= 8 && samples_ == 1;
+        if (photometric_ == PHOTOMETRIC_RGB) return samples_ >= 3;
+        return photometric_ <= PHOTOMETRIC_MINISBLACK && samples_ >= 1;
+    }
+
+    void takeChannels(Picture& picture) {
+        picture.isColour = photometric_ == PHOTOMETRIC_RGB;
+        const int colours = picture.isColour ? 3 : 1;
+        std::uint16_t count = 0, *kinds = nullptr;
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_EXTRASAMPLES, &count, &kinds);
+        const int kind = count > 0 && kinds ? kinds[0] : EXTRASAMPLE_UNSPECIFIED;
+        picture.hasOpacity =
+            samples_ == colours + 1 || (samples_ > colours && kind != EXTRASAMPLE_UNSPECIFIED);
+        picture.channels = colours + (picture.hasOpacity ? 1 : 0);
+        isMultiplied_ = picture.hasOpacity && kind == EXTRASAMPLE_ASSOCALPHA;
+    }
+
+    // ---- pixels
+
+    void readBlocks(Picture& picture) {
+        TIFF* const tiff = tiff_.get();
+        const bool tiled = TIFFIsTiled(tiff) != 0;
+        Block block;
+        block.width = tiled ? tag<std::uint32_t>(TIFFTAG_TILEWIDTH) : static_cast<std::size_t>(picture.width);
+        block.height = tiled ? tag<std::uint32_t>(TIFFTAG_TILELENGTH)
+                             : std::min<std::size_t>(tag<std::uint32_t>(TIFFTAG_ROWSPERSTRIP),
+                                                     static_cast<std::size_t>(picture.height));
+        block.rowBytes = static_cast<std::size_t>(tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff));
+        const auto size = static_cast<std::size_t>(tiled ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff));
+        const std::size_t rowBits =
+            block.width * static_cast<std::size_t>(isSeparate() ? picture.bits : bitsEach(picture));
+        if (block.width == 0 || block.height == 0 || block.rowBytes * 8 < rowBits ||
+            size / block.height < block.rowBytes ||
+            static_cast<double>(size) > static_cast<double>(file_.bytes.size()) * expansion() + 65536)
+            giveUp();
+        std::vector<unsigned char> decoded(size);
+        const std::uint32_t count = tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            place(block, k, picture);
+            if (block.plane >= static_cast<std::size_t>(picture.channels)) break;
+            const auto whole = static_cast<tmsize_t>(size);
+            if ((tiled ? TIFFReadEncodedTile(tiff, k, decoded.data(), whole)
+                       : TIFFReadEncodedStrip(tiff, k, decoded.data(), -1)) < 0)
+                giveUp();
+            takeBlock(block, decoded.data(), picture);
+        }
+    }
+
+    // Blocks are counted along rows, then down, then by planes.
+    void place(Block& block, std::size_t number, const Picture& picture) const {
+        const auto width = static_cast<std::size_t>(picture.width),
+                   height = static_cast<std::size_t>(picture.height);
+        const std::size_t across = (width + block.width - 1) / block.width,
+                          down = (height + block.height - 1) / block.height;
+        block.left = number % across * block.width;
+        block.top = number / across % down * block.height;
+        block.plane = isSeparate() ? number / across / down : 0;
+    }
+
+    void takeBlock(const Block& block, const unsigned char* decoded, Picture& picture) const {
+        const auto width = static_cast<std::size_t>(picture.width),
+                   channels = static_cast<std::size_t>(picture.channels), each = sizeOf(picture.type);
+        const std::size_t rows = std::min(block.height, static_cast<std::size_t>(picture.height) - block.top),
+                          columns = std::min(block.width, width - block.left);
+        const bool separate = isSeparate();
+        const std::size_t step = separate ? 1 : static_cast<std::size_t>(samples_);
+        for (std::size_t y = 0; y < rows; ++y) {
+            const unsigned char* from = decoded + y * block.rowBytes;
+            std::byte* to = picture.samples.data() +
+                            (((block.top + y) * width + block.left) * channels + block.plane) * each;
+            for (std::size_t x = 0; x < columns; ++x, to += channels * each)
+                for (std::size_t c = 0; c < (separate ? 1 : channels); ++c)
+                    takeSample(from, x * step + c, picture.bits, to + c * each);
+        }
+    }
+
+    void takeSample(const unsigned char* row, std::size_t k, int bits, std::byte* to) const {
+        const auto size = static_cast<std::size_t>(bits);
+        if (bits >= 8) {
+            std::memcpy(to, row + k * size / 8, size / 8);
+            return;
+        }
+        const int most = (1 << bits) - 1, value = row[k * size / 8] >> (8 - size - k * size % 8) & most;
+        *to = static_cast<std::byte>(photometric_ == PHOTOMETRIC_PALETTE ? value : value * 255 / most);
+    }
+
+    // ---- samples as they are meant
+
+    void finish(Picture& picture) {
+        if (photometric_ == PHOTOMETRIC_PALETTE) putColours(picture);
+        if (photometric_ == PHOTOMETRIC_MINISWHITE) turnOver(picture);
+        if (isMultiplied_) divide(picture);
+        turn(picture, tag<std::uint16_t>(TIFFTAG_ORIENTATION));
+    }
+
+    void putColours(Picture& picture) const {
+        std::uint16_t* map[3] = {};
+        if (!TIFFGetField(tiff_.get(), TIFFTAG_COLORMAP, &map[0], &map[1], &map[2]))
+            throw InputError(name_, "cannot be read as a picture: its palette is missing");
+        const std::vector<std::byte> places = std::move(picture.samples);
+        picture.type = ValueType::uint16;
+        picture.isColour = true;
+        picture.channels = 3;
+        picture.samples.resize(places.size() * 6);
+        for (std::size_t k = 0; k < 3 * places.size(); ++k)
+            std::memcpy(picture.samples.data() + 2 * k, map[k % 3] + std::to_integer<int>(places[k / 3]), 2);
+    }
+
+    static void turnOver(Picture& picture) {
+        withType(picture.type, [&]<class T>(T) {
+            if constexpr (std::is_unsigned_v<T>) {
+                T* const samples = reinterpret_cast<T*>(picture.samples.data());
+                const auto step = static_cast<std::size_t>(picture.channels);
+                for (std::size_t k = 0; k < picture.sampleCount(); k += step)
+                    samples[k] = static_cast<T>(std::numeric_limits<T>::max() - samples[k]);
+            }
+        });
+    }
+
+    static void divide(Picture& picture) {
+        const double full = picture.fullValue();
+        withType(picture.type, [&]<class T>(T) {
+            T* pixel = reinterpret_cast<T*>(picture.samples.data());
+            const int last = picture.channels - 1;
+            for (std::size_t k = 0; k < picture.sampleCount(); k += last + 1u, pixel += last + 1) {
+                const double opacity = static_cast<double>(pixel[last]);
+                for (int c = 0; c < last && opacity > 0; ++c) {
+                    const double value = static_cast<double>(pixel[c]) * full / opacity;
+                    pixel[c] = std::is_integral_v<T> ? static_cast<T>(std::lround(std::min(value, full)))
+                                                     : static_cast<T>(value);
+                }
+            }
+        });
+    }
+
+    // Rows from the top, pixels from the left. What is turned by a quarter stays, as in libtiff's own viewer.
+    static void turn(Picture& picture, int orientation) {
+        const bool right = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT,
+                   bottom = orientation == ORIENTATION_BOTLEFT || orientation == ORIENTATION_BOTRIGHT;
+        const std::size_t pixel = static_cast<std::size_t>(picture.channels) * sizeOf(picture.type),
+                          row = pixel * static_cast<std::size_t>(picture.width);
+        const auto swapRuns = [](std::byte* begin, std::size_t size, std::size_t count) {
+            for (std::size_t k = 0; k < count / 2; ++k)
+                std::swap_ranges(begin + k * size, begin + (k + 1) * size, begin + (count - 1 - k) * size);
+        };
+        std::byte* const samples = picture.samples.data();
+        if (bottom) swapRuns(samples, row, static_cast<std::size_t>(picture.height));
+        for (std::size_t at = 0; right && at < picture.samples.size(); at += row)
+            swapRuns(samples + at, pixel, static_cast<std::size_t>(picture.width));
+    }
+
+    // What libtiff can turn into colours of 8 bits.
+    Picture shown(Picture picture) {
+        char why[1024] = "";
+        if (!TIFFRGBAImageOK(tiff_.get(), why))
+            throw InputError(name_, std::string("cannot be read as a picture: ") + why);
+        const int bits = std::max(1, bitsEach(picture));
+        picture.isColour = true;
+        picture.channels = 3;
+        // Chroma may be coarser.
+        allocate(picture, name_, bits, file_.bytes.size(), 3 * expansion());
+        std::vector<std::uint32_t> raster(picture.samples.size() / 3);
+        if (!TIFFReadRGBAImageOriented(tiff_.get(), static_cast<std::uint32_t>(picture.width),
+                                       static_cast<std::uint32_t>(picture.height), raster.data(),
+                                       ORIENTATION_TOPLEFT, 1))
+            giveUp();
+        for (std::size_t k = 0; k < picture.samples.size(); ++k)
+            picture.samples[k] = static_cast<std::byte>(raster[k / 3] >> 8 * (k % 3) & 255);
+        return picture;
+    }
+
+    const std::string& name_;
+    TiffBytes file_;
+    TiffPtr tiff_;
+    int samples_ = 1, photometric_ = 0;
+    bool isMultiplied_ = false;  // with opacity
+};
+
+}  // namespace
+
+bool isTiff(std::string_view bytes) {
+    const std::string_view start = bytes.substr(0, 4);
+    return start == std::string_view("II*\0", 4) || start == std::string_view("MM\0*", 4) ||
+           start == std::string_view("II+\0", 4) || start == std::string_view("MM\0+", 4);
+}
+
+Picture readTiff(std::string_view bytes, const std::string& name) {
+    if (!isTiff(bytes)) throw InputError(name, "is no TIFF");
+    return TiffReader(bytes, name).picture();
+}
+
+}  // namespace isowave
