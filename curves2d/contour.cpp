@@ -40,7 +40,8 @@ double rootOnEdge(const std::array<double, 4>& c, bool negativeAtZero) {
 using Vertex = std::int32_t;
 constexpr Vertex kNone = -1;
 
-struct Placed {
+// A crossing on a lattice row, by the lattice point before it.
+struct Crossing {
     std::int32_t x;
     Vertex vertex;
 };
@@ -66,7 +67,7 @@ class Tracer {
     }
 
   private:
-    // Rows of squares (by their lower side) that a known control point has a say in.
+    // Rows of squares (by their lower side) in which a known control point has a weight.
     std::vector<std::int32_t> squareRows() const {
         std::vector<std::int32_t> rows;
         for (const std::int32_t y : field_.rowNumbers())
@@ -125,7 +126,7 @@ class Tracer {
         std::array<RowReader<Real>, 4> readers{
             RowReader<Real>(field_.find(y - 1), field_.K), RowReader<Real>(field_.find(y), field_.K),
             RowReader<Real>(field_.find(y + 1), field_.K), RowReader<Real>(field_.find(y + 2), field_.K)};
-        std::vector<Placed> above;
+        std::vector<Crossing> above;
         std::size_t belowCursor = 0;
         for (const Span& span : spansOf(y)) {
             for (std::size_t k = 0; k < 4; ++k) {
@@ -197,9 +198,9 @@ class Tracer {
         }
     }
 
-    // The rings around a point form a chain. Passing a crossing of ring r either enters r, directly inside
-    // the innermost ring around the point so far, or leaves r, which then was the innermost: nothing that
-    // lies inside r reaches r's curve. So a stack does it.
+    // The rings around a point form a chain. A walk along a row that passes a crossing of ring r either enters r,
+    // directly inside the innermost ring around the walk so far, or leaves r, which then was the innermost: nothing
+    // that lies inside r reaches r's curve. So a stack holds the chain.
     void nest(Curves& curves) {
         std::vector<Vertex> open;
         for (std::size_t i = 0; i < rowCrossings_.size(); ++i) {
@@ -221,11 +222,11 @@ class Tracer {
     Block block_;
     std::vector<Point> points_;
     std::vector<Vertex> next_, ringOf_;
-    std::vector<Placed> below_;         // crossings on the lower side of the row of squares, ascending
-    std::vector<Placed> rowCrossings_;  // x holds the row here: all crossings on lattice rows, in order
+    std::vector<Crossing> below_;         // crossings on the lower side of the row of squares, ascending
+    std::vector<Crossing> rowCrossings_;  // x holds the row here: all crossings on lattice rows, in order
 };
 
-// ---- between the crossings --------------------------------------------------------------------------------
+// ---- between the crossings ----
 
 // The field near one piece, in world coordinates.
 template <class Real>
@@ -280,20 +281,21 @@ Point squareOf(Point a, Point b) { return {std::floor((a.x + b.x) / 2), std::flo
 // Halving a piece ten times makes it a thousandth of a lattice step long.
 constexpr int kMostHalvings = 10;
 
-constexpr double kLookAt[] = {1. / 8, 2. / 8, 3. / 8, 4. / 8, 5. / 8, 6. / 8, 7. / 8};
+constexpr double kSampledAt[] = {1. / 8, 2. / 8, 3. / 8, 4. / 8, 5. / 8, 6. / 8, 7. / 8};
 
-// Points strictly between a and b; false when the zero set could not be followed.
+// Adds points of the zero set strictly between a and b until the polyline is within the tolerance; false when the zero
+// set could not be followed.
 template <class Real>
-bool between(const ZeroSet<Real>& zeros, Point a, Point b, Point square, double tolerance, int halvings,
-             Ring& out) {
+bool addPointsBetween(const ZeroSet<Real>& zeros, Point a, Point b, Point square, double tolerance,
+                      int halvings, Ring& out) {
     bool good = true;
-    for (const double t : kLookAt) good = good && zeros.distance(a + t * (b - a)) <= tolerance;
+    for (const double t : kSampledAt) good = good && zeros.distance(a + t * (b - a)) <= tolerance;
     if (good) return true;
     Point middle = 0.5 * (a + b);
     if (halvings == 0 || !zeros.project(middle, square)) return false;
-    if (!between(zeros, a, middle, square, tolerance, halvings - 1, out)) return false;
+    if (!addPointsBetween(zeros, a, middle, square, tolerance, halvings - 1, out)) return false;
     out.push_back(middle);
-    return between(zeros, middle, b, square, tolerance, halvings - 1, out);
+    return addPointsBetween(zeros, middle, b, square, tolerance, halvings - 1, out);
 }
 
 int turn(Point a, Point b, Point c) {
@@ -335,7 +337,7 @@ void smoothPiece(const ZeroSet<Real>& zeros, Point a, Point b, Point square, dou
     const Point along = size > 0 ? (1 / size) * chord : Point{1, 0};
     Bezier piece = hermite(a, b, zeros.tangent(a, along), zeros.tangent(b, along));
     double worst = 0;
-    for (const double t : kLookAt) worst = std::max(worst, zeros.distance(piece.at(t)));
+    for (const double t : kSampledAt) worst = std::max(worst, zeros.distance(piece.at(t)));
     if (worst > tolerance) {
         Point middle = 0.5 * (a + b);
         if (halvings > 0 && zeros.project(middle, square)) {
@@ -402,8 +404,8 @@ Curves refined(const RowField<Real>& field, const Curves& curves, double toleran
             ring.points.push_back(a);
             Ring added;
             if (hasTwoPieces(field, square) ||
-                !between(zeros, curves.frame.toWorld(a), curves.frame.toWorld(b), square, tolerance,
-                         kMostHalvings, added))
+                !addPointsBetween(zeros, curves.frame.toWorld(a), curves.frame.toWorld(b), square, tolerance,
+                                  kMostHalvings, added))
                 continue;
             Ring chain{a};
             for (const Point& p : added) chain.push_back(curves.frame.toLattice(p));

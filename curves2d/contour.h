@@ -12,32 +12,11 @@
 // meet neither each other nor themselves, and squares meet in edges only.
 #pragma once
 
-#include <vector>
-
-#include "isowave/progress.h"
 #include "curves2d/row_field.h"
+#include "isowave/curves.h"
+#include "isowave/progress.h"
 
 namespace isowave::curves2d {
-
-struct CurveRing {
-    Ring points;  // lattice coordinates
-    int parent =
-        -1;  // the ring directly around it: of a hole its outer ring, of an island in a hole the hole
-    bool hole = false;
-};
-
-struct Curves {
-    Frame frame;  // of the lattice
-    std::vector<CurveRing> rings;
-
-    // In the input's coordinates.
-    Ring world(std::size_t ring) const;
-    std::size_t outerCount() const;
-    std::size_t holeCount() const;
-    std::size_t pointCount() const;
-    // Outer rings less holes, in the input's unit squared.
-    double area() const;
-};
 
 template <class Real>
 Curves extractCurves(const RowField<Real>& field, const Progress& progress = {});
@@ -48,17 +27,6 @@ Curves extractCurves(const RowField<Real>& field, const Progress& progress = {})
 // holds two pieces.
 template <class Real>
 Curves refined(const RowField<Real>& field, const Curves& curves, double tolerance);
-
-struct Bezier {
-    Point start, startHandle, endHandle, end;  // the input's coordinates
-    Point at(double t) const;
-};
-
-struct SmoothCurves {
-    std::vector<std::vector<Bezier>> rings;  // in the order of Curves::rings
-    double deviation = 0;                    // the largest distance from the zero set that was seen
-    std::size_t straightPieces = 0;          // pieces left straight because no halving would do
-};
 
 // Cubic Béziers through the crossings along the zero set's tangents, halved at points of the zero set until
 // they stay within `tolerance` of it (input's units; estimate |F|/|grad F| at seven points of each).

@@ -21,8 +21,8 @@ using wavelets::Interval;
 using wavelets::IntervalTransform;
 using wavelets::Run;
 
-// Scratch of one thread.
-struct Lines {
+// The scratch memory of one thread.
+struct RowScratch {
     IntervalTransform transform;
     std::vector<Run> runs;
     std::vector<Interval> intervals;
@@ -49,10 +49,10 @@ struct Lines {
 
 template <class Work>
 void forEachRow(std::size_t count, const Progress& progress, const Work& work) {
-    tbb::enumerable_thread_specific<Lines> scratch;
+    tbb::enumerable_thread_specific<RowScratch> scratch;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 16), [&](const auto& range) {
         progress.check();
-        Lines& lines = scratch.local();
+        RowScratch& lines = scratch.local();
         for (std::size_t i = range.begin(); i < range.end(); ++i) work(i, lines);
     });
 }
@@ -96,7 +96,7 @@ struct FineWalk {
 };
 
 template <class Real>
-void analyseRow(const Row<Real>& fine, std::int32_t number, double K, Lines& lines, Row<Real>& coarse,
+void analyseRow(const Row<Real>& fine, std::int32_t number, double K, RowScratch& lines, Row<Real>& coarse,
                 StepRow<Real>& step) {
     lines.intervalsOf(fine.runs, number);
     std::size_t coarseSize = 0, detailSize = 0;
@@ -127,7 +127,7 @@ void analyseRow(const Row<Real>& fine, std::int32_t number, double K, Lines& lin
 }
 
 template <class Real>
-Row<Real> synthesiseRow(const Row<Real>* coarse, const StepRow<Real>& step, double K, Lines& lines) {
+Row<Real> synthesiseRow(const Row<Real>* coarse, const StepRow<Real>& step, double K, RowScratch& lines) {
     if (!coarse) refuseParts(step.row, "the step knows it, the coarser field does not");
     lines.intervalsOf(step.runs, step.row);
     if (coarse->runs.size() != lines.intervals.size())
@@ -178,7 +178,7 @@ DirectionResult<Real> analyseDirection(const RowField<Real>& fine, const Progres
     result.step.axis = fine.axis;
     result.step.rows.resize(numbers.size());
     std::vector<Row<Real>> made(numbers.size());
-    forEachRow(numbers.size(), progress, [&](std::size_t i, Lines& lines) {
+    forEachRow(numbers.size(), progress, [&](std::size_t i, RowScratch& lines) {
         analyseRow(*fine.find(numbers[i]), numbers[i], fine.K, lines, made[i], result.step.rows[i]);
     });
     result.coarse = emptyLike(fine);
@@ -194,7 +194,7 @@ RowField<Real> synthesiseDirection(const RowField<Real>& coarse, const Step<Real
     if (coarse.axis != step.axis)
         throw InputError("pyramid", "a step and the coarser field halve different directions");
     std::vector<Row<Real>> made(step.rows.size());
-    forEachRow(made.size(), progress, [&](std::size_t i, Lines& lines) {
+    forEachRow(made.size(), progress, [&](std::size_t i, RowScratch& lines) {
         made[i] = synthesiseRow(coarse.find(step.rows[i].row), step.rows[i], coarse.K, lines);
     });
     RowField<Real> fine = emptyLike(coarse);

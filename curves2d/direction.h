@@ -2,8 +2,8 @@
 // (wavelets/interval/interval.h), in parallel over rows. The 3D twin is wavelets/direction.h.
 #pragma once
 
-#include "isowave/progress.h"
 #include "curves2d/row_field.h"
+#include "isowave/progress.h"
 
 namespace isowave::curves2d {
 

@@ -1,14 +1,14 @@
 #include "curves2d/draw.h"
 
 #include <fmt/format.h>
-#include <itkPNGImageIO.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
-#include "isowave/error.h"
 #include "curves2d/raster.h"
+#include "io/picture/png.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {
@@ -78,11 +78,12 @@ void write(const std::filesystem::path& path, const std::string& text) {
     file.commit();
 }
 
-void writeSvgPath(const std::filesystem::path& path, const std::string& d, const View& view) {
+std::string svgOfPath(const std::string& d, const View& view) {
     const Point size = scaled(view, 1024);
-    write(path, fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" {}>\n"
-                            "<path fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/>\n</svg>\n",
-                            size.x, size.y, viewBox(view), kInk, d));
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" {}>\n"
+        "<path fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/>\n</svg>\n",
+        size.x, size.y, viewBox(view), kInk, d);
 }
 
 void putRing(std::string& out, const Ring& ring) {
@@ -110,18 +111,9 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-}  // namespace
-
-void writeSvg(const std::filesystem::path& path, const Curves& curves, const View& view) {
-    writeSvgPath(path, pathOf(curves, view), view);
-}
-
-void writeSvg(const std::filesystem::path& path, const SmoothCurves& curves, const View& view) {
-    writeSvgPath(path, pathOf(curves, view), view);
-}
-
-void writeGeojson(const std::filesystem::path& path, const Curves& curves, const std::string& name) {
-    std::vector<std::vector<std::size_t>> polygons;  // outer ring, then its holes
+// Of each polygon its outer ring, then the holes directly in it.
+std::vector<std::vector<std::size_t>> polygonsOf(const Curves& curves) {
+    std::vector<std::vector<std::size_t>> polygons;
     std::vector<std::size_t> polygonOf(curves.rings.size());
     for (std::size_t r = 0; r < curves.rings.size(); ++r)
         if (!curves.rings[r].hole) {
@@ -131,12 +123,26 @@ void writeGeojson(const std::filesystem::path& path, const Curves& curves, const
     for (std::size_t r = 0; r < curves.rings.size(); ++r)
         if (curves.rings[r].hole)
             polygons[polygonOf[static_cast<std::size_t>(curves.rings[r].parent)]].push_back(r);
+    return polygons;
+}
 
+}  // namespace
+
+std::string svg(const Curves& curves, const View& view) { return svgOfPath(pathOf(curves, view), view); }
+std::string svg(const SmoothCurves& curves, const View& view) {
+    return svgOfPath(pathOf(curves, view), view);
+}
+std::string svg(const DrawnCurves& curves, const View& view) {
+    return curves.smooth ? svg(*curves.smooth, view) : svg(curves.curves, view);
+}
+
+std::string geojson(const Curves& curves, const std::string& name) {
     std::string out = fmt::format(
         "{{\"type\":\"FeatureCollection\",\"features\":[{{\"type\":\"Feature\","
         "\"properties\":{{\"name\":{}}},\"geometry\":"
         "{{\"type\":\"MultiPolygon\",\"coordinates\":[",
         quoted(name));
+    const auto polygons = polygonsOf(curves);
     for (std::size_t p = 0; p < polygons.size(); ++p) {
         out += p ? ",\n[" : "\n[";
         for (std::size_t k = 0; k < polygons[p].size(); ++k) {
@@ -145,11 +151,10 @@ void writeGeojson(const std::filesystem::path& path, const Curves& curves, const
         }
         out += "]";
     }
-    out += "\n]}}]}\n";
-    write(path, out);
+    return out + "\n]}}]}\n";
 }
 
-void writeText(const std::filesystem::path& path, const Curves& curves) {
+std::string gmtText(const Curves& curves) {
     std::string out;
     for (std::size_t r = 0; r < curves.rings.size(); ++r) {
         const CurveRing& ring = curves.rings[r];
@@ -160,10 +165,21 @@ void writeText(const std::filesystem::path& path, const Curves& curves) {
             fmt::format_to(std::back_inserter(out), "{:.12g} {:.12g}\n", p.x, p.y);
         }
     }
-    write(path, out);
+    return out;
 }
 
-void writePng(const std::filesystem::path& path, const Curves& curves, const View& view, int pixels) {
+void writeSvg(const std::filesystem::path& path, const Curves& curves, const View& view) {
+    write(path, svg(curves, view));
+}
+void writeSvg(const std::filesystem::path& path, const SmoothCurves& curves, const View& view) {
+    write(path, svg(curves, view));
+}
+void writeGeojson(const std::filesystem::path& path, const Curves& curves, const std::string& name) {
+    write(path, geojson(curves, name));
+}
+void writeText(const std::filesystem::path& path, const Curves& curves) { write(path, gmtText(curves)); }
+
+GreyPicture picture(const Curves& curves, const View& view, int pixels) {
     constexpr int kSamples = 4;  // along each axis of a pixel
     const Point size = scaled(view, pixels);
     const auto width = static_cast<std::int32_t>(size.x), height = static_cast<std::int32_t>(size.y);
@@ -181,30 +197,18 @@ void writePng(const std::filesystem::path& path, const Curves& curves, const Vie
                  ++x)
                 ++covered[static_cast<std::size_t>(y / kSamples) * static_cast<std::size_t>(width) +
                           static_cast<std::size_t>(x / kSamples)];
-    std::vector<unsigned char> grey;
-    grey.reserve(covered.size());
+    GreyPicture grey{width, height, {}};
+    grey.values.reserve(covered.size());
     for (const std::int32_t count : covered)
-        grey.push_back(static_cast<unsigned char>(255 - 255 * count / (kSamples * kSamples)));
+        grey.values.push_back(static_cast<std::uint8_t>(255 - 255 * count / (kSamples * kSamples)));
+    return grey;
+}
 
-    AtomicFile file(path);
-    const itk::PNGImageIO::Pointer io = itk::PNGImageIO::New();
-    io->SetFileName(file.temporary().string());
-    io->SetNumberOfDimensions(2);
-    io->SetDimensions(0, static_cast<unsigned>(width));
-    io->SetDimensions(1, static_cast<unsigned>(height));
-    io->SetPixelType(itk::ImageIOBase::SCALAR);
-    io->SetComponentType(itk::ImageIOBase::UCHAR);
-    io->SetNumberOfComponents(1);
-    itk::ImageIORegion region(2);
-    region.SetSize(0, static_cast<unsigned>(width));
-    region.SetSize(1, static_cast<unsigned>(height));
-    io->SetIORegion(region);
-    try {
-        io->Write(grey.data());
-    } catch (const itk::ExceptionObject&) {
-        throw OperationError(path.string(), "could not be written; is the disk full?");
-    }
-    file.commit();
+void writePng(const std::filesystem::path& path, const Curves& curves, const View& view, int pixels) {
+    const GreyPicture grey = picture(curves, view, pixels);
+    Picture png{.width = grey.width, .height = grey.height, .pixelSize = {{1, 1}}};
+    for (const std::uint8_t value : grey.values) png.samples.push_back(static_cast<std::byte>(value));
+    write(path, pngBytes(png));
 }
 
 std::string sheetOf(const std::vector<Panel>& panels, const View& view) {

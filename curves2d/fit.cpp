@@ -12,7 +12,7 @@
 namespace isowave::curves2d {
 namespace {
 
-// ---- shape: which control points are known ----------------------------------------------------------------
+// ---- which control points are known ----
 
 // Positions in exactly one of the two: where an odd number of the four kinds of ends has passed.
 Spans symmetricDifference(const Spans& a, const Spans& b) {
@@ -121,10 +121,10 @@ Region nodesNear(const std::vector<Segment>& segments, double band) {
     return dilatedRegion(corners, 1, 0);
 }
 
-// What of the boundary separates an inside lattice point from an outside one: pieces in stabbed nodes and in
-// their neighbours. The rest are both sides of a slit, spikes, overlaps and islands that lie between the
-// lattice points. At all of them the distance is 0 but the sign does not change, and the coarser levels of
-// such a field put specks there (seen: holes 500 pixels from the nearest coast, along a seam of the data).
+// The part of the boundary that separates inside lattice points from outside ones: the pieces in stabbed nodes and in
+// their neighbours. The other pieces are both sides of a slit, spikes, overlaps and islands between the lattice points.
+// There the distance is 0 but the sign does not change, and the coarser levels of such a field would have specks (seen:
+// holes 500 pixels from the nearest coast, along a seam of the data).
 std::vector<Segment> separating(const std::vector<Segment>& boundary, const Region& stabbed) {
     const Region near = dilatedRegion(stabbed, 1, 1);
     std::vector<Segment> out;
@@ -148,7 +148,7 @@ std::vector<Segment> separating(const std::vector<Segment>& boundary, const Regi
     return out;
 }
 
-// ---- origin -----------------------------------------------------------------------------------------------
+// ---- origin ----
 
 void shiftRegion(Region& region, std::int32_t dx, std::int32_t dy) {
     region.firstRow += dy;
@@ -156,8 +156,8 @@ void shiftRegion(Region& region, std::int32_t dx, std::int32_t dy) {
         for (Span& span : row) span = {span.first + dx, span.last + dx};
 }
 
-// Halving a domain that lies at -1 and above ends at one node, control points -1 .. 2. One that straddles the
-// origin ends at -2 .. 2, two nodes, for ever.
+// Halving a domain that lies at -1 and above ends at one node, control points -1 .. 2. A domain that straddles the
+// origin halves to -2 .. 2, two nodes, and stays there.
 void moveOrigin(Region& known, Shape& shape) {
     std::int32_t low[2] = {-1, -1};
     for (std::int32_t y = known.firstRow; y < known.endRow(); ++y) {
@@ -173,7 +173,7 @@ void moveOrigin(Region& known, Shape& shape) {
     shape.frame.origin = shape.frame.toWorld({-double(dx), -double(dy)});
 }
 
-// ---- field ------------------------------------------------------------------------------------------------
+// ---- field ----
 
 // Control points of ±K by sign on I.
 template <class Real>
@@ -246,7 +246,7 @@ void updateRows(RowField<Real>& field, const std::vector<std::int32_t>& numbers,
     for (std::size_t i = 0; i < numbers.size(); ++i) field.rows[numbers[i]].values = std::move(made[i]);
 }
 
-// ---- smooth -----------------------------------------------------------------------------------------------
+// ---- smooth ----
 
 // c <- (c + mean of the four neighbours)/2, all at once.
 template <class Real>
@@ -265,7 +265,7 @@ void laplacianPass(RowField<Real>& field, const std::vector<std::int32_t>& numbe
         });
 }
 
-// ---- repair -----------------------------------------------------------------------------------------------
+// ---- repair ----
 
 // Calls f(x, s, F, value index) for every known lattice point of a row; s: the input's sign, F: the spline.
 template <class Real, class F>
@@ -335,8 +335,8 @@ void countDisagreement(const RowField<Real>& field, const Region& inside, FitRep
 // The sign is what E section 2 asks for; the margin keeps it when the field is next filtered or stored.
 constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
 
-// A distance fit is right to a hundredth of a step where it disagrees at all, so it is moved as little as
-// will do. Both in lattice steps.
+// Where a distance fit has the wrong sign at all, it is within a hundredth of a step of the right one, so the repair
+// moves it as little as suffices. Both in lattice steps.
 constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
 
 template <class Real>
@@ -350,7 +350,7 @@ void finish(RowField<Real>& field, const Shape& shape, double floor, double targ
     if (report) *report = result;
 }
 
-// ---- distances --------------------------------------------------------------------------------------------
+// ---- distances ----
 
 // Signed distance to the boundary on the lattice points `where`, clamped to ±w and scaled so that ±w is ±K.
 RowField<float> distances(const Region& where, const Shape& shape, double w, double K,

@@ -2,30 +2,21 @@
 // near the curve. The 3D twin, with what was measured, is volume/fit.h.
 #pragma once
 
-#include "isowave/progress.h"
 #include "curves2d/row_field.h"
+#include "isowave/curves.h"
+#include "isowave/progress.h"
 
 namespace isowave::curves2d {
 
-// What a bitmap or a set of polygons comes to.
+// What a bitmap or a set of polygons comes to: the solid of the plane that is fitted.
 struct Shape {
     Frame frame;                    // where lattice point (i, j) lies in the input's coordinates
     Region inside;                  // the lattice points inside
     std::vector<Segment> boundary;  // lattice coordinates, any order; only fitDistance needs it
 };
 
-// Both fits shift the lattice where control points would lie below -1 on an axis, so that the first one lies
-// at -1, and move the frame the other way: every field then ends at a single node. World coordinates stay.
-
-struct FitReport {
-    std::int64_t latticePoints = 0;  // of I
-    std::int64_t disagreeing = 0;    // of these, whose sign is not the input's (0 unless the repair gave up)
-    int repairPasses = 0;            // passes that changed something
-    bool repairAgreed =
-        true;  // it stopped because every lattice point of I had its sign by the floor, not at the limit
-    double repairFloor = 0;     // of K: what s F has to reach for that
-    std::int64_t repaired = 0;  // control points changed by the repair, counted once a pass
-};
+// Both fits shift the lattice where control points would lie below -1 on an axis, so that the first one lies at -1, and
+// move the frame the other way: the pyramid of every such field ends at a single node. World coordinates stay.
 
 struct BinaryFitOptions {
     int passes = 3;  // Laplacian passes
@@ -51,8 +42,8 @@ template <class Real>
 RowField<Real> fitDistance(const Shape& shape, const DistanceFitOptions& options = {},
                            FitReport* report = nullptr, const Progress& progress = {});
 
-// For tests and for who wants only the shape: nodes (unit squares, by their lower corner) whose corner signs
-// differ, and I around a set of nodes.
+// The passes that decide which control points are known: the nodes (unit squares, by their lower corner) whose corner
+// signs differ, and I around a set of nodes.
 Region stabbedNodes(const Region& inside);
 Region knownAround(const Region& nodes);
 

@@ -1,75 +1,28 @@
 #include "curves2d/ladder.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "isowave/error.h"
-#include "curves2d/bitmap.h"
-#include "curves2d/polygon_input.h"
-#include "curves2d/raster.h"
+#include <cmath>
 
 namespace isowave::curves2d {
 namespace {
 
-Input readImageInput(const std::filesystem::path& path, const InputOptions& options) {
-    Input input;
-    const Bitmap bitmap = readBitmap(path);
-    const ValueRange range = valueRange(bitmap);
-    const double middle = 0.5 * (static_cast<double>(range.low) + static_cast<double>(range.high));
-    double iso = options.iso.value_or(middle);
-    if (range.low == range.high && !options.iso)
-        throw InputError(path.string(),
-                         fmt::format("every pixel is {}: there is no crossing to draw; --iso makes "
-                                     "all of it inside or outside",
-                                     range.low));
-    if (!options.iso && !range.twoValues)
-        input.remarks.push_back(
-            fmt::format("--iso {:g}: the middle of the values {:g} .. {:g}", middle, range.low, range.high));
-    input.shape = shapeOf(bitmap, iso, options.invert, path.string());
-    input.extent.take(Point{-0.5, -0.5});
-    input.extent.take(Point{bitmap.width - 0.5, bitmap.height - 0.5});
-    input.fit = range.twoValues ? Fit::binary : Fit::distance;
-    input.kind = fmt::format("image {} x {}", bitmap.width, bitmap.height);
-    return input;
-}
-
-Input readPolygonInput(const std::filesystem::path& path, const InputOptions& options,
-                       const Progress& progress) {
-    Input input;
-    const PolygonInput polygons = readPolygons(path);
-    for (const Polygon& polygon : polygons.polygons)
-        for (const Ring& ring : polygon.rings)
-            for (const Point& p : ring) input.extent.take(p);
-    try {
-        input.shape.frame = frameAround(polygons.polygons, options.pixels);
-        input.shape.inside = rasterise(polygons.polygons, input.shape.frame, progress);
-    } catch (const InputError& error) {
-        throw InputError(path.string(), error.what());
-    }
-    if (input.shape.inside.empty())
-        throw InputError(
-            path.string(),
-            fmt::format("no pixel's middle lies in a polygon at --pixels {}; take more", options.pixels));
-    input.shape.boundary = boundary(polygons.polygons, input.shape.frame);
-    input.yUp = true;
-    input.pixel = input.shape.frame.spacing.x;
-    input.kind = fmt::format("{} polygons of {} rings, {} points", polygons.polygons.size(),
-                             polygons.ringCount(), polygons.pointCount());
-    input.remarks = polygons.remarks;
-    return input;
-}
-
 constexpr int kMostSamples = 64;
 
-}  // namespace
-
-Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
-    progress("reading", 0);
-    if (!std::filesystem::exists(path)) throw InputError(path.string(), "there is no such file");
-    return looksLikePolygons(path) ? readPolygonInput(path, options, progress)
-                                   : readImageInput(path, options);
+StepFacts factsOf(int step, const RowField<float>& field, const Curves& curves) {
+    StepFacts facts;
+    facts.step = step;
+    const Bounds box = field.bounds();
+    facts.domain = {box.size(0), box.size(1)};
+    facts.controlPoints = field.controlPointCount();
+    facts.nodes = definedNodeCount(field);
+    facts.holes = curves.holeCount();
+    facts.rings = curves.outerCount();
+    facts.points = curves.pointCount();
+    facts.area = curves.area();
+    return facts;
 }
+
+}  // namespace
 
 RowField<float> fit(const Shape& shape, Fit method, const DistanceFitOptions& options, FitReport* report,
                     const Progress& progress) {
@@ -106,23 +59,14 @@ Distance distanceTo(const SegmentTree& target, const Curves& curves, double spac
     return result;
 }
 
-Ladder climb(RowField<float> field, std::optional<int> lastStep, const LadderVisitor& visit,
-             const Progress& progress) {
+Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, const FieldVisitor& visit,
+                  const Progress& progress) {
     Ladder ladder;
     std::optional<SegmentTree> finest;
     double spacing = 0;
     const auto onStep = [&](int step, const RowField<float>& f) {
         const Curves curves = extractCurves(f, progress);
-        StepFacts facts;
-        facts.step = step;
-        const Bounds box = f.bounds();
-        facts.domain = {box.size(0), box.size(1)};
-        facts.controlPoints = f.controlPointCount();
-        facts.nodes = definedNodeCount(f);
-        facts.holes = curves.holeCount();
-        facts.rings = curves.outerCount();
-        facts.points = curves.pointCount();
-        facts.area = curves.area();
+        StepFacts facts = factsOf(step, f, curves);
         if (step == 0) {
             spacing = std::min(f.frame.spacing.x, f.frame.spacing.y);
             finest.emplace(segmentsOf(curves));

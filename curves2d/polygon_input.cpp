@@ -3,25 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
-#include "isowave/error.h"
+#include "base/text.h"
 #include "curves2d/segment_tree.h"
+#include "io/vector/geojson.h"
+#include "io/vector/point_text.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kLargest = 1e9;
-// Collections of collections: real files have three or four; each is one call deep in the reader.
-constexpr int kDeepestCollection = 100;
-// Editors on Windows put it before UTF-8.
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 // Takes rings as they come from a file, checks and repairs them.
 class Collector {
@@ -93,176 +89,78 @@ class Collector {
 };
 
 // ---- JSON
-// -----------------------------------------------------------------------------------------------------
 
-class JsonReader {
-  public:
-    JsonReader(const Json& root, Collector& out) : root_(root), out_(out) {}
+Ring ringOf(const Polyline& line) {
+    Ring ring;
+    ring.reserve(line.size());
+    for (std::size_t k = 0; k + 1 < line.coordinates.size(); k += 2)
+        ring.push_back({line.coordinates[k], line.coordinates[k + 1]});
+    return ring;
+}
 
-    void read() {
-        if (!root_.is_object() || !root_.contains("type"))
-            throw InputError(out_.name(), "JSON without a \"type\"; expected GeoJSON or TopoJSON");
-        if (root_["type"] == "Topology")
-            readTopology();
-        else
-            readObject(root_);
-    }
+void refuseFault(const GeoFault& fault, const std::string& ring, const std::string& name) {
+    if (fault.kind == GeoFault::Kind::notAList) throw InputError(name, ring + ": is no list of points");
+    if (fault.kind == GeoFault::Kind::noArc) throw InputError(name, ring + ": " + fault.found);
+    throw InputError(name,
+                     fmt::format("{}: point {} is {}; expected [x, y]", ring, fault.vertex, fault.found));
+}
 
-  private:
-    static std::string typeOf(const Json& object) {
-        const auto type = object.find("type");
-        return type != object.end() && type->is_string() ? type->get<std::string>() : "nothing";
-    }
+// A geometry that has not the list that its type promises, or, of several polygons, one that is none.
+void refuseFault(const GeoGeometry& geometry, std::size_t polygon, const std::string& name) {
+    const std::string last = geometry.fault->pointer.substr(geometry.fault->pointer.rfind('/') + 1);
+    if (std::isdigit(static_cast<unsigned char>(last[0])))
+        refuseFault(*geometry.fault, fmt::format("polygon {}, ring 0", polygon), name);
+    throw InputError(name, fmt::format("a {} without a list \"{}\"", geometry.type, last));
+}
 
-    void readObject(const Json& object, int depth = 0) {
-        if (object.is_null()) return;
-        if (depth > kDeepestCollection)
-            throw InputError(out_.name(),
-                             fmt::format("nests collections more than {} deep", kDeepestCollection));
-        const std::string type = typeOf(object);
-        if (type == "FeatureCollection")
-            for (const Json& feature : list(object, "features")) readObject(feature, depth + 1);
-        else if (type == "GeometryCollection")
-            for (const Json& geometry : list(object, "geometries")) readObject(geometry, depth + 1);
-        else if (type == "Feature")
-            readObject(object.value("geometry", Json()), depth + 1);
-        else if (type == "Polygon")
-            readPolygon(list(object, pointsKey()));
-        else if (type == "MultiPolygon")
-            for (const Json& polygon : list(object, pointsKey())) readPolygon(polygon);
-        else
-            out_.other(type);
-    }
-
-    const char* pointsKey() const { return arcs_.empty() ? "coordinates" : "arcs"; }
-
-    const Json& list(const Json& object, const char* key) const {
-        const auto at = object.find(key);
-        if (at == object.end() || !at->is_array())
-            throw InputError(out_.name(), fmt::format("a {} without a list \"{}\"", typeOf(object), key));
-        return *at;
-    }
-
-    void readPolygon(const Json& rings) {
-        out_.beginPolygon();
-        std::size_t r = 0;
-        for (const Json& ring : rings) {
-            const std::string place = fmt::format("polygon {}, ring {}", polygon_, r++);
-            if (!ring.is_array()) throw InputError(out_.name(), place + ": is no list of points");
-            out_.ring(arcs_.empty() ? points(ring, place) : stitched(ring, place), place, true);
+void readJson(const GeoJson& file, Collector& out) {
+    if (file.complaint()) throw InputError(out.name(), "is no JSON, or truncated: " + *file.complaint());
+    if (!file.type()) throw InputError(out.name(), "JSON without a \"type\"; expected GeoJSON or TopoJSON");
+    std::size_t polygon = 0;
+    for (const GeoGeometry& geometry : file.geometries()) {
+        const bool isCollection = geometry.type.ends_with("Collection");
+        if (geometry.fault && (geometry.isPolygon() || isCollection))
+            refuseFault(geometry, polygon, out.name());
+        if (!geometry.isPolygon()) {
+            out.other(geometry.type);
+            continue;
         }
-        out_.endPolygon();
-        ++polygon_;
-    }
-
-    Ring points(const Json& list, const std::string& place) const {
-        Ring ring;
-        ring.reserve(list.size());
-        for (const Json& p : list) {
-            if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
-                throw InputError(out_.name(), fmt::format("{}: point {} is {}; expected [x, y]", place,
-                                                          ring.size(), p.dump().substr(0, 40)));
-            ring.push_back({p[0], p[1]});
+        out.beginPolygon();
+        for (std::size_t r = 0; r < geometry.lines.size(); ++r) {
+            const GeoLine& line = geometry.lines[r];
+            const std::string place = fmt::format("polygon {}, ring {}", polygon, r);
+            if (line.fault) refuseFault(*line.fault, place, out.name());
+            out.ring(ringOf(line.points), place, true);
         }
-        return ring;
+        out.endPolygon();
+        ++polygon;
     }
-
-    // TopoJSON: arcs of steps in whole units of a grid; a ring is a list of arcs, ~i meaning arc i backwards.
-    void readTopology() {
-        Point scale{1, 1}, shift{0, 0};
-        const bool quantised = root_.contains("transform");
-        if (quantised) {
-            const Json& transform = root_["transform"];
-            const Ring two =
-                points(Json::array({list(transform, "scale"), list(transform, "translate")}), "transform");
-            scale = two[0];
-            shift = two[1];
-        }
-        for (const Json& arc : list(root_, "arcs")) {
-            Ring line = points(arc, fmt::format("arc {}", arcs_.size()));
-            Point at{0, 0};
-            for (Point& p : line) {
-                at = quantised ? at + p : p;
-                p = {shift.x + scale.x * at.x, shift.y + scale.y * at.y};
-            }
-            arcs_.push_back(std::move(line));
-        }
-        const auto objects = root_.find("objects");
-        if (objects == root_.end() || !objects->is_object())
-            throw InputError(out_.name(), "a Topology without \"objects\"");
-        for (const Json& object : *objects) readObject(object);
-    }
-
-    Ring stitched(const Json& numbers, const std::string& place) const {
-        Ring ring;
-        for (const Json& n : numbers) {
-            const std::int64_t number = n.is_number_integer() ? n.get<std::int64_t>() : INT64_MAX;
-            // What is beyond 64 bits with a sign is kept without one, and would wrap to an arc that there is.
-            const bool wraps = n.is_number_unsigned() && number < 0;
-            const std::int64_t index = number < 0 ? ~number : number;
-            if (wraps || index >= static_cast<std::int64_t>(arcs_.size()))
-                throw InputError(out_.name(), fmt::format("{}: arc {} of {}", place, n.dump(), arcs_.size()));
-            const Ring& arc = arcs_[static_cast<std::size_t>(index)];
-            if (number < 0)
-                ring.insert(ring.end(), arc.rbegin(), arc.rend());
-            else
-                ring.insert(ring.end(), arc.begin(), arc.end());
-        }
-        return ring;
-    }
-
-    const Json& root_;
-    Collector& out_;
-    std::vector<Ring> arcs_;
-    std::size_t polygon_ = 0;
-};
+}
 
 // ---- text
-// -----------------------------------------------------------------------------------------------------
-
-bool parsePoint(const std::string& line, Point& point) {
-    const char* at = line.data();
-    const char* end = at + line.size();
-    for (double* value : {&point.x, &point.y}) {
-        while (at != end && (std::isspace(static_cast<unsigned char>(*at)) || *at == ',')) ++at;
-        if (at != end && *at == '+') ++at;
-        const auto [behind, error] = std::from_chars(at, end, *value);
-        if (error != std::errc()) return false;
-        at = behind;
-    }
-    return at == end || std::isspace(static_cast<unsigned char>(*at)) || *at == ',';
-}
 
 void readText(const std::string& text, Collector& out) {
     out.beginPolygon();
     Ring ring;
-    std::size_t number = 0, lineNumber = 0;
+    std::size_t number = 0;
     const auto flush = [&] {
         if (!ring.empty()) out.ring(std::move(ring), fmt::format("ring {}", number++), false);
         ring.clear();
     };
-    std::size_t begin = 0;
-    while (begin < text.size()) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string line = text.substr(begin, end - begin);
-        begin = end + 1;
-        ++lineNumber;
-        const std::size_t first = line.find_first_not_of(" \t\r");
-        if (first == std::string::npos || line[first] == '>') {
-            flush();
-        } else if (line[first] != '#') {
-            Point p;
-            if (!parsePoint(line, p))
-                throw InputError(out.name(),
-                                 fmt::format("line {}: '{}'; expected two numbers 'x y', '>' or an "
-                                             "image",
-                                             lineNumber, line.substr(0, 40)));
-            ring.push_back(p);
-        }
-    }
+    eachPointRow(text, [&](const PointRow& row) {
+        if (row.kind == PointRow::Kind::separator || row.kind == PointRow::Kind::blank) flush();
+        if (row.kind != PointRow::Kind::point) return;
+        if (row.columns < 2)
+            throw InputError(out.name(), fmt::format("line {}: '{}'; expected two numbers 'x y', '>' or an "
+                                                     "image",
+                                                     row.number, row.text.substr(0, 40)));
+        ring.push_back({row.values[0], row.values[1]});
+    });
     flush();
     out.endPolygon();
 }
+
+// ---- where a ring meets itself
 
 int turn(Point a, Point b, Point c) {
     const double area = cross(b - a, c - a);
@@ -333,31 +231,20 @@ PolygonInput readPolygons(const std::filesystem::path& path) {
     const std::string name = path.string();
     std::ifstream stream(path, std::ios::binary);
     if (!stream || std::filesystem::is_directory(path)) throw InputError(name, "cannot be read");
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos) throw InputError(name, "is empty; expected polygons");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string_view content = withoutByteOrderMark(text);
+    const std::size_t first = content.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) throw InputError(name, "is empty; expected polygons");
     Collector out(name);
-    if (text[first] == '{' || text[first] == '[') {
-        Json json;
-        try {
-            json = Json::parse(text);
-        } catch (const Json::exception& error) {
-            std::string what = error.what();
-            std::replace(what.begin(), what.end(), '\n', ' ');
-            throw InputError(name, "is no JSON, or truncated: " + what);
-        }
-        JsonReader(json, out).read();
-    } else {
+    if (content[first] == '{' || content[first] == '[')
+        readJson(GeoJson(text, GeoJson::Positions::plane, name), out);
+    else
         readText(text, out);
-    }
     return out.finish();
 }
 
 bool looksLikePolygons(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = toLower(path.extension().string());
     for (const char* known : {".geojson", ".json", ".topojson", ".txt", ".gmt", ".xy"})
         if (extension == known) return true;
     return false;

@@ -1,6 +1,7 @@
 #include "curves2d/pyramid.h"
 
 #include <cassert>
+#include <string>
 
 namespace isowave::curves2d {
 namespace {
@@ -53,7 +54,7 @@ Pyramid<Real> analyse(RowField<Real> field, int mostSteps, const Progress& progr
     return pyramid;
 }
 
-std::string stepName(int step) { return std::to_string(step / 2 + 1) + (step % 2 ? "a" : ""); }
+std::string stepName(int step) { return "L" + std::to_string(step / 2) + (step % 2 ? "a" : ""); }
 
 #define ISOWAVE_INSTANTIATE(Real)  \
     template struct Pyramid<Real>; \

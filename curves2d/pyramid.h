@@ -1,10 +1,8 @@
-// Directions x, y, x, y, ... until one node is left: 16 control points. Step s has halved x ceil(s/2) times
-// and y floor(s/2) times; level l is step 2l. E's Table 1 counts levels from 1 and calls the step between
-// level l and the next one "la".
+// The planar wavelet pyramid: directions x, y, x, y, ... are halved until one node is left, 16 control points. Step s has
+// halved x ceil(s/2) times and y floor(s/2) times; level l is step 2l. stepName() gives their names, L0, L0a, L1, ...
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include "curves2d/direction.h"
 
@@ -27,15 +25,12 @@ struct Pyramid {
 template <class Real>
 using StepVisitor = std::function<void(int step, const RowField<Real>& field)>;
 
-// At most `mostSteps` of them.
+// Takes steps until one node is left, at most `mostSteps` of them.
 // Largest error of pyramid.field(0): 1e-5 K for float, 1e-12 K for double, whatever the number of steps.
 // REQUIRES: no known control point lies below -1 on either axis (fit.h sees to it; elsewhere a domain that
 // straddles the origin would halve to -2 .. 2 and stay there).
 template <class Real>
 Pyramid<Real> analyse(RowField<Real> field, int mostSteps = 1000, const Progress& progress = {},
                       const StepVisitor<Real>& visit = {});
-
-// "1", "1a", "2", ...
-std::string stepName(int step);
 
 }  // namespace isowave::curves2d

@@ -1,9 +1,9 @@
 // Polygons -> the lattice points inside them, exactly.
 #pragma once
 
-#include "isowave/progress.h"
 #include "curves2d/geometry.h"
 #include "curves2d/spans.h"
+#include "isowave/progress.h"
 
 namespace isowave::curves2d {
 

@@ -5,23 +5,9 @@
 
 namespace isowave::curves2d {
 
-void Box::take(Point p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-}
-
-void Box::take(const Box& box) {
-    take(box.low);
-    take(box.high);
-}
-
-bool Box::meets(const Box& other) const {
-    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y;
-}
-
-double Box::squaredDistance(Point p) const {
-    const double dx = std::max({low.x - p.x, 0.0, p.x - high.x}),
-                 dy = std::max({low.y - p.y, 0.0, p.y - high.y});
+double squaredDistance(Point p, const Box& box) {
+    const double dx = std::max({box.low.x - p.x, 0.0, p.x - box.high.x}),
+                 dy = std::max({box.low.y - p.y, 0.0, p.y - box.high.y});
     return dx * dx + dy * dy;
 }
 
@@ -72,13 +58,14 @@ double SegmentTree::distance(Point p, double near) const {
 
 void SegmentTree::nearest(std::uint32_t at, Point p, double& best) const {
     const Node& node = nodes_[at];
-    if (node.box.squaredDistance(p) >= best) return;
+    if (squaredDistance(p, node.box) >= best) return;
     if (!node.right) {
         for (std::uint32_t i = node.begin; i < node.end; ++i)
             best = std::min(best, squaredDistance(p, segments_[order_[i]]));
         return;
     }
-    const bool leftFirst = nodes_[at + 1].box.squaredDistance(p) <= nodes_[node.right].box.squaredDistance(p);
+    const bool leftFirst =
+        squaredDistance(p, nodes_[at + 1].box) <= squaredDistance(p, nodes_[node.right].box);
     nearest(leftFirst ? at + 1 : node.right, p, best);
     nearest(leftFirst ? node.right : at + 1, p, best);
 }

@@ -8,23 +8,14 @@
 
 namespace isowave::curves2d {
 
-struct Box {
-    Point low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
-
-    void take(Point p);
-    void take(const Box& box);
-    bool meets(const Box& other) const;
-    double squaredDistance(Point p) const;
-    bool empty() const { return !(low.x <= high.x); }
-};
-
+double squaredDistance(Point p, const Box& box);
 double squaredDistance(Point p, const Segment& s);
 
 class SegmentTree {
   public:
     explicit SegmentTree(std::vector<Segment> segments);
 
-    // Infinite for an empty tree. near: a distance that is known to suffice, to search less.
+    // Infinite for an empty tree. near: larger distances need not be told apart, so less is searched.
     double distance(Point p, double near = INFINITY) const;
 
     // Calls f(index into the segments as they were given) for every one whose box meets `box`; stops when f

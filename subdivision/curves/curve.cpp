@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 
 #include "isowave/error.h"
 
@@ -91,8 +92,8 @@ void applyAll(const FilterBank& bank, const double* in, std::size_t inputCount, 
     const auto inputs = static_cast<std::ptrdiff_t>(inputCount),
                outputs = static_cast<std::ptrdiff_t>(outputCount);
     const auto head = std::min(outputs, static_cast<std::ptrdiff_t>(bank.head.size()));
-    const auto inner =
-        std::max(head, outputs - static_cast<std::ptrdiff_t>(bank.tail.size()));  // end of the inner ones
+    // The end of the inner ones.
+    const auto inner = std::max(head, outputs - static_cast<std::ptrdiff_t>(bank.tail.size()));
     const auto single = [&](std::ptrdiff_t k) {
         const auto [row, first] = rowOf(bank, k, inputs, outputs);
         addRow<Dim>(*row, first, in, inputs, out + k * Dim);
@@ -103,8 +104,8 @@ void applyAll(const FilterBank& bank, const double* in, std::size_t inputCount, 
     for (std::ptrdiff_t phase = 0; phase < period; ++phase) {
         const FilterRow& row = bank.inner[static_cast<std::size_t>(phase)];
         const auto taps = static_cast<std::ptrdiff_t>(row.weights.size());
-        // Of the outputs head + phase + q period those with 0 <= first + q step and first + q step + taps <=
-        // inputs do not wrap: one sweep; the few before and after it one by one.
+        // Of the outputs head + phase + q period those with 0 <= first + q step and first + q step + taps <= inputs do
+        // not wrap: they are one sweep, and the few before and after it are done one by one.
         const std::ptrdiff_t count = std::max<std::ptrdiff_t>(0, ceilDivide(inner - head - phase, period));
         const std::ptrdiff_t room = inputs - taps - row.first;
         const std::ptrdiff_t end = room < 0 ? 0 : std::min(count, room / bank.step + 1);
@@ -247,7 +248,8 @@ void checkLevel(const CurveLevels& curve, int level) {
     }
 }
 
-Polyline climb(const CurveLevels& curve, const CurveFilters& filters, int level, int lastWithDetails) {
+// From the coarsest level to `level`; details below `lastWithDetails` are taken for 0.
+Polyline rebuilt(const CurveLevels& curve, const CurveFilters& filters, int level, int lastWithDetails) {
     checkLevels(curve, filters);
     Polyline result = curve.coarse;
     for (int k = curve.levels() - 1; k >= level; --k) {
@@ -308,12 +310,12 @@ CurveLevels decompose(const Polyline& curve, const CurveFilters& filters, int le
 
 Polyline reconstruct(const CurveLevels& curve, const CurveFilters& filters, int level) {
     checkLevel(curve, level);
-    return climb(curve, filters, level, 0);
+    return rebuilt(curve, filters, level, 0);
 }
 
 Polyline subdivided(const CurveLevels& curve, const CurveFilters& filters, int from) {
     checkLevel(curve, from);
-    return climb(curve, filters, 0, from);
+    return rebuilt(curve, filters, 0, from);
 }
 
 std::size_t detailCount(const CurveLevels& curve) {
@@ -418,6 +420,29 @@ Polyline resampled(const Polyline& curve, std::size_t count) {
         }
     }
     return result;
+}
+
+// ---- the public face: filters by the name of their scheme ----
+
+CurveTransform::CurveTransform(std::string_view scheme, bool closed)
+    : filters_(std::make_shared<const CurveFilters>(curveScheme(scheme), closed)) {}
+
+CurveTransform CurveTransform::ofMask(std::string_view mask, int width) {
+    return CurveTransform(std::make_shared<const CurveFilters>(maskScheme(mask, width), true));
+}
+
+int CurveTransform::mostLevels(std::size_t points) const { return filters_->mostLevels(points); }
+
+CurveLevels CurveTransform::decompose(const Polyline& curve, int levels) const {
+    return subdivision::decompose(curve, *filters_, levels);
+}
+
+Polyline CurveTransform::reconstruct(const CurveLevels& curve, int level) const {
+    return subdivision::reconstruct(curve, *filters_, level);
+}
+
+Polyline CurveTransform::subdivided(const CurveLevels& curve, int from) const {
+    return subdivision::subdivided(curve, *filters_, from);
 }
 
 }  // namespace isowave::subdivision

@@ -13,55 +13,21 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
+#include "isowave/subdivision.h"
 #include "subdivision/curves/curve_schemes.h"
 
 namespace isowave::subdivision {
 
-inline constexpr double kCurveRoundTrip = 1e-12;
-
-struct Polyline {
-    int dimension = 2;                // 2 or 3
-    bool closed = false;              // the last point is joined to the first, and is not its copy
-    std::vector<double> coordinates;  // x y [z] of point 0, of point 1, ..
-
-    std::size_t size() const { return coordinates.size() / static_cast<std::size_t>(dimension); }
-};
-
-struct CurveDetails {
-    std::size_t points = 0;           // of the level that they restore
-    std::vector<double> coordinates;  // points - coarser points, each of the curve's dimension
-};
-
-struct CurveLevels {
-    std::string scheme;
-    Polyline coarse;                    // of the level details.size()
-    std::vector<CurveDetails> details;  // details[k] turns level k+1 into level k
-
-    int levels() const { return static_cast<int>(details.size()); }
-};
-
-// Throws InputError when the curve has too few points (and says how many are needed), a coordinate is not
-// finite (and names the point), or the curve is open and the filters are for closed ones, or the other way
-// round.
+// Throws InputError when the curve has too few points (and says how many are needed), a coordinate is not finite (and
+// names the point), or the curve is open and the filters are for closed ones, or the other way round.
 CurveLevels decompose(const Polyline& curve, const CurveFilters& filters, int levels);
 
 // The curve at `level` (0: as it was). Throws InputError when scheme, sizes or levels do not belong together.
 Polyline reconstruct(const CurveLevels& curve, const CurveFilters& filters, int level = 0);
 
-// What P alone makes of level `from`: all finer details are taken for 0. From the coarsest: P^k V0 of O
-// section 5.
+// What P alone makes of level `from`: all finer details are taken for 0. From the coarsest this is P^k V0 of O section 5.
 Polyline subdivided(const CurveLevels& curve, const CurveFilters& filters, int from);
-
-// Sets every detail shorter than `length` (in the units of the curve) to 0; returns how many are left.
-std::size_t threshold(CurveLevels& curve, double length);
-// Keeps the `count` longest details (all levels in one order; of equal ones the coarser, then the earlier).
-void keepLongest(CurveLevels& curve, std::size_t count);
-std::size_t detailCount(const CurveLevels& curve);
-// Those that are not 0.
-std::size_t nonzeroDetailCount(const CurveLevels& curve);
 
 // Puts `points` in the place of the curve at `level`; details finer than that stay, so they ride on the new
 // shape. Throws InputError when the number of points, the dimension or the closing is another one.

@@ -1,16 +1,14 @@
-// Curves in files. What is not a curve in the file (properties, styles, other elements) is kept when it is
-// written again with other points.
+// Curves in files. What is not a curve in the file (properties, styles, other elements) is kept when it is written
+// again with other points.
 //
-//   .txt .xy .dat .csv   a point a line, "x y" or "x y z" (spaces or commas); a line that starts with '>'
-//   begins
-//                        another curve, as GMT writes it; '#' begins a comment
-//   .geojson .json       every LineString, Polygon ring and their Multi- forms, wherever they are in the
-//   document .svg                 every <path> of straight pieces (M L H V Z and lower case), <polyline>,
-//   <polygon>; points
-//                        are the file's own numbers, transformations of the drawing are left to the drawing
+//   .txt .xy .dat .csv  a point a line, "x y" or "x y z" (spaces or commas); a line that starts with '>' begins another
+//                       curve, as GMT writes it; '#' begins a comment
+//   .geojson .json      every LineString, Polygon ring and their Multi- forms, wherever they are in the document
+//   .svg                every <path> of straight pieces (M L H V Z and lower case), <polyline>, <polygon>; points are
+//                       the file's own numbers, transformations of the drawing are left to the drawing
 //
-// A curve is closed when its last point repeats its first (then it is not stored twice), or the file says so
-// (a ring, Z, <polygon>).
+// A curve is closed when its last point repeats its first (then it is not stored twice), or the file says so (a ring,
+// Z, <polygon>).
 #pragma once
 
 #include <filesystem>

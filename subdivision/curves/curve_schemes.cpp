@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "isowave/error.h"
+#include "subdivision/filters/masks.h"
 
 namespace isowave::subdivision {
 
@@ -23,8 +24,7 @@ int openFineSize(const CurveScheme& scheme, int n) {
     return scheme.family == Family::DynLevinGregory ? 2 * n - 1 : 2 * n - scheme.degree;
 }
 
-// --- P of an open curve
-// -------------------------------------------------------------------------------------
+// ---- P of an open curve ----
 
 // Knots 0 .. n-degree in steps of 1/`steps`, the first and the last repeated degree + 1 times.
 std::vector<Rational> clampedKnots(int degree, int intervals, int steps) {
@@ -72,8 +72,7 @@ FiniteSubdivision openSubdivision(const CurveScheme& scheme, int n) {
     return p;
 }
 
-// --- A, B, Q of an open curve
-// -------------------------------------------------------------------------------
+// ---- A, B, Q of an open curve ----
 
 // Twice the position around which row j of A is centred, counted from the nearer end: the vertex node (cubic:
 // f0, f2, f3, f5, f7 ..; dlg: f0, f2, f4 ..) or, for Chaikin, the middle of the pair that the point becomes.
@@ -176,16 +175,7 @@ Diagram openQ(const std::vector<Diagram>& b, std::size_t k, int fine, int twiceC
     return {};
 }
 
-Rational largest(const Diagram& diagram) {
-    Rational best = 0;
-    for (const auto& [node, value] : diagram) {
-        if (abs(value) > abs(best)) best = value;
-    }
-    return best;
-}
-
-// --- doubles
-// ------------------------------------------------------------------------------------------------
+// ---- doubles ----
 
 FilterRow toRow(const Diagram& diagram, std::ptrdiff_t origin) {
     FilterRow row;
@@ -222,7 +212,7 @@ std::optional<FilterBank> repeating(const std::vector<Diagram>& rows, int inputs
     while (begin > 0 && repeats(begin - 1)) --begin;
     while (end + period < count && repeats(end)) ++end;
     if (end - begin < 3 * period) return std::nullopt;
-    // invariant wanted: head and tail keep their distance, so that a longer curve has the same ones
+    // Head and tail do not depend on the number of rows between them: a longer curve has the same ones.
     FilterBank bank;
     bank.step = step;
     for (int k = 0; k < begin; ++k) bank.head.push_back(toRow(row(k), 0));
@@ -270,24 +260,6 @@ CurveFilters::Maps closedMaps(const Filters& f) {
 }
 
 }  // namespace
-
-Diagram fourPointRow(int n, int i) {
-    if (i % 2 == 0) return Diagram::delta(at(i / 2));
-    const int j = i / 2;  // the edge from j to j+1
-    if (n == 2) return {{at(0), Rational(1, 2)}, {at(1), Rational(1, 2)}};
-    if (j == n - 2) return fourPointRow(n, 1).mirrored(at(n - 1));
-    if (j == 0 && n == 3) return {{at(0), Rational(3, 8)}, {at(1), Rational(6, 8)}, {at(2), Rational(-1, 8)}};
-    if (j == 0) {
-        return {{at(0), Rational(5, 16)},
-                {at(1), Rational(15, 16)},
-                {at(2), Rational(-5, 16)},
-                {at(3), Rational(1, 16)}};
-    }
-    return {{at(j - 1), Rational(-1, 16)},
-            {at(j), Rational(9, 16)},
-            {at(j + 1), Rational(9, 16)},
-            {at(j + 2), Rational(-1, 16)}};
-}
 
 const std::vector<std::string>& curveSchemeNames() {
     static const std::vector<std::string> names = {"chaikin-4", "chaikin-8", "cubic-3",     "cubic-7",
@@ -342,6 +314,13 @@ CurveScheme ownScheme(const Mask& mask, int width) {
     return scheme;
 }
 
+CurveScheme maskScheme(std::string_view taps, int width) {
+    const Mask mask = customMask(Lattice::Line, parseRationals(taps));
+    const int taken = width ? width : smallestWidth(mask, 41).value_or(1);
+    construct(mask, taken);  // says what is wrong
+    return ownScheme(mask, taken);
+}
+
 Filters interiorFilters(const CurveScheme& scheme) {
     if (scheme.fit != Fit::Refined) return construct(scheme.mask, scheme.width);
     const Filters trial = construct(scheme.mask, 1);
@@ -378,7 +357,7 @@ OpenSystem openSystem(const CurveScheme& scheme, int n) {
     }
     if (scheme.family == Family::BSpline) {
         for (std::size_t k = 0; k < open.system.b.size(); ++k) {
-            const Rational scale = largest(open.system.q[k]);
+            const Rational scale = open.system.q[k].largest();
             open.system.q[k] = open.system.q[k].scaled(1 / scale);
             open.system.b[k] = open.system.b[k].scaled(scale);
         }

@@ -6,24 +6,23 @@
 //   chaikin-W      2n                    2n - 2, n >= 3     least norm of W taps (W = 4, 8, 12, ..)
 //   cubic-W        2n                    2n - 3, n >= 4     least norm of W taps (W = 3, 7, 11, ..)
 //   dlg-trial      2n                    2n - 1, n >= 2     keeps every second point
-//   dlg-refined    2n                    2n - 1, n >= 2     O(3): moves a kept point to lessen the details
-//   beside it dlg-optimal    2n                    2n - 1, n >= 2     least norm of 9 taps
+//   dlg-refined    2n                    2n - 1, n >= 2     O(3): moves a kept point to lessen the details beside it
+//   dlg-optimal    2n                    2n - 1, n >= 2     least norm of 9 taps
 //
-// Open ends. chaikin and cubic are the B-splines whose first and last knot are repeated (3-fold, 4-fold), so
-// the curve begins at its first point; dlg is the four-point rule with the cubic (quadratic, linear)
-// polynomial through the points there are: first edge (5,15,-5,1)/16 for n >= 4, (3,6,-1)/8 for n = 3, the
-// midpoint for n = 2. A row of A near an end has the window of the interior, narrowed about its vertex node
-// until it fits (B section 5).
+// Open ends. chaikin and cubic are the B-splines whose first and last knot are repeated (3-fold, 4-fold), so the curve
+// begins at its first point; dlg is the four-point rule (four_point.h). A row of A near an end has the window of the
+// interior, narrowed about its vertex node until it fits (B section 5).
 //
-// A size that the subdivision does not make (an odd number of closed points, say) is brought to one that it
-// does by a *virtual point*: one more point, placed where one detail vanishes. That detail is then not
-// stored, and the point is dropped again in reconstruction, so what is stored is as much as there was. For
-// the closed cubic the point is (4(f[-1] + f[1]) - f[-2] - f[2])/6. Closed curves take it at the last detail, open
-// ones two beside the middle one. Not at the last, which the ends of Chaikin do not bear: f[0] = c[0], f[1] = (c[0] +
-// c[1])/2 there, so where the detail is zero c[1] = 2 f[1] - f[0], and a size that asks for a virtual point at every
-// level (2^k + 3) doubled what stands beside the end with every level. Not at the middle one either: halving leaves
-// the middle where it is, so each virtual point would be made of the one before (1.35 a level for chaikin-4). Two beside
-// it they do not meet, and nothing grows.
+// Virtual points. A size that the subdivision does not make (an odd number of closed points, say) is brought to one that
+// it does by one more point, placed where one detail vanishes. That detail is not stored, and reconstruction drops the
+// point again, so as many numbers are stored as there were. For the closed cubic the point is
+// (4(f[-1] + f[1]) - f[-2] - f[2])/6. Closed curves take it at the last detail, open ones two details beside the middle:
+//   at the end      Chaikin's ends do not bear it. There f[0] = c[0], f[1] = (c[0] + c[1])/2, so a vanishing detail says
+//                   c[1] = 2 f[1] - f[0], and a size that asks for a virtual point at every level (2^k + 3) doubles
+//                   what stands beside the end with every level.
+//   in the middle   Halving leaves the middle where it is, so each virtual point would be made of the one before (a
+//                   factor of 1.35 a level for chaikin-4).
+//   two beside it   the virtual points of two levels do not meet, and nothing grows.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +31,10 @@
 #include <string_view>
 #include <vector>
 
+#include "isowave/subdivision.h"
 #include "subdivision/filters/construct.h"
-#include "subdivision/filters/finite.h"
+#include "subdivision/filters/finite_subdivision.h"
+#include "subdivision/filters/four_point.h"
 
 namespace isowave::subdivision {
 
@@ -51,16 +52,13 @@ struct CurveScheme {
 // "dlg-refined", "cubic-7", "chaikin-4"; "cubic" is cubic-7, "chaikin" chaikin-4, "dlg" dlg-refined.
 // Throws InputError that lists the schemes.
 CurveScheme curveScheme(std::string_view name);
-// The schemes that tables and tests walk: chaikin-4, chaikin-8, cubic-3, cubic-7, cubic-11, dlg-*.
-const std::vector<std::string>& curveSchemeNames();
 // Closed curves only.
 CurveScheme ownScheme(const Mask& mask, int width);
+// The same for taps as text; width 0: the smallest there is. Throws as construct() does.
+CurveScheme maskScheme(std::string_view taps, int width);
 
 // Inside a curve: A, B, Q of the scheme. Throws as construct() does.
 Filters interiorFilters(const CurveScheme& scheme);
-
-// What the fine point i of an open four-point curve with n coarse points takes from them.
-Diagram fourPointRow(int n, int i);
 
 // All diagrams of an open curve with n coarse points (nodes (0,0) .. (n-1,0)), proved.
 // Throws InputError when n is too small, or the scheme is for closed curves only.
@@ -88,8 +86,7 @@ struct FilterBank {
     std::ptrdiff_t step = 1;
 };
 
-// The filters of a scheme for curves of any length, in doubles. Immutable once made: share it between
-// threads.
+// The filters of a scheme for curves of any length, in doubles. Immutable once made: share it between threads.
 class CurveFilters {
   public:
     // Derives and proves: some 10 to 300 ms for open curves.

@@ -266,14 +266,6 @@ LocalPair localPair(const Mask& mask, const Diagram& a, int width) {
         "only; use a mask of one of these three kinds");
 }
 
-Rational largest(const Diagram& diagram) {
-    Rational best = 0;
-    for (const auto& [node, value] : diagram) {
-        if (abs(value) > abs(best)) best = value;
-    }
-    return best;
-}
-
 // (I - P A) q:  q - sum over t of (a at t . q) (p at t).
 Diagram lifted(const Mask& mask, const Diagram& a, const Diagram& q) {
     Diagram result = q;
@@ -287,7 +279,7 @@ Filters complete(const Mask& mask, const Diagram& a, int width) {
     for (std::size_t k = 0; k < pair.q.size(); ++k) {
         Diagram q = pair.needsLift ? lifted(mask, a, pair.q[k]) : pair.q[k];
         if (pair.rescale) {
-            const Rational scale = largest(q);
+            const Rational scale = q.largest();
             q = q.scaled(1 / scale);
             filters.b[k] = filters.b[k].scaled(scale);
         }

@@ -10,25 +10,20 @@
 //   (1) AP = I     (2) BP = 0     (3) AQ = 0     (4) BQ = I
 //
 // The derivation, in four steps.
-//   A: the row of least norm in a window around the vertex node with (1). It is the local least-squares fit
-//   of
-//      B section 2: among all rows that reproduce c from P c, noise in f moves it least.
-//   B and a first Q0 with BP = 0 and B Q0 = I, local, by the first of these that applies:
-//      trivial   P interpolates (vertex nodes keep their value): B is the residual at an edge node, Q0 puts
-//      it back flip      on the line: b[1-o] = (-1)^o p[o],  q[1-o] = (-1)^o a[o].  The alternating signs
-//      make the products
-//                b.p cancel in pairs, and b.q = sum p[o] a[o] = 1.
-//      tensor    on the quad lattice, a mask that is a product of two: products of the line's filters
-//      one tap   a left inverse A0 of P that reads one vertex node only, with weight a0:
-//                Q0 = delta_e - (column e of A0)/a0 on the vertex nodes, so A0 Q0 = 0;  B = row e of (I - P
-//                A0).
-//   Q = (I - P A) Q0. Then AQ = AQ0 - (AP)AQ0 = 0 and BQ = BQ0 - (BP)AQ0 = I: B does not change with A, and A
-//   may be
-//      widened at will. (B section 7 finds this as lifting, with A = A0 + S B and Q = Q0 - P S.) Q is the
-//      only one with (3) and (4), since [A; B] is regular.
-//   Scale: a B row and its Q column may trade a factor. Where B comes from a flip or a product, the largest
-//   value
-//      of each Q column is made +1 (the first of equals), as in B(2.13), B(2.14).
+//   A      The row of least norm in a window around the vertex node with (1). It is the local least-squares fit of B
+//          section 2: among all rows that reproduce c from P c, noise in f moves it least.
+//   B, Q0  B and a first Q0 with B P = 0 and B Q0 = I, local, by the first of these that applies:
+//            trivial  P interpolates (vertex nodes keep their value): B is the residual at an edge node, Q0 puts it back.
+//            flip     On the line: b[1-o] = (-1)^o p[o],  q[1-o] = (-1)^o a[o].  The alternating signs make the
+//                     products b.p cancel in pairs, and b.q = sum p[o] a[o] = 1.
+//            tensor   On the quad lattice, a mask that is a product of two: products of the line's filters.
+//            one tap  A left inverse A0 of P that reads one vertex node only, with weight a0:
+//                     Q0 = delta_e - (column e of A0)/a0 on the vertex nodes, so A0 Q0 = 0;  B = row e of (I - P A0).
+//   Q      Q = (I - P A) Q0. Then AQ = AQ0 - (AP)AQ0 = 0 and BQ = BQ0 - (BP)AQ0 = I. B does not change with A, so A may
+//          be widened at will. (B section 7 finds this as lifting, with A = A0 + S B and Q = Q0 - P S.) Q is the only
+//          one with (3) and (4), since [A; B] is regular.
+//   Scale  A row of B and its column of Q may trade a factor. Where B comes from a flip or a product, the largest value
+//          of each column of Q is made +1 (the first of equals), as in B(2.13), B(2.14).
 #pragma once
 
 #include <optional>
@@ -66,9 +61,8 @@ Proof prove(const Filters& filters);
 
 // The least-norm A of this width and the B, Q that belong to it.
 // Throws InputError, naming the mask, when
-//   - no A of this width exists (and says which is the smallest that does), or none exists at all because P
-//   is
-//     not injective: on the line its even and odd taps share a factor; on a torus its rank is short;
+//   - no A of this width exists (and says which is the smallest that does), or none exists at all because P is not
+//     injective: on the line its even and odd taps share a factor; on a torus its rank is short;
 //   - no local B, Q0 is known (the mask neither interpolates, nor is a product, nor has a one-tap inverse);
 //   - the width does not fit the mask (on the line both have an odd or both an even number of taps).
 Filters construct(const Mask& mask, int width);
@@ -88,23 +82,5 @@ bool interpolates(const Mask& mask);
 
 // The left inverse of P that reads one vertex node only, if there is one in a ball of this width.
 std::optional<Diagram> oneTapInverse(const Mask& mask, int width);
-
-// Masks by name: chaikin, cubic, dlg on the line; butterfly, loop on the triangular lattice; catmull-clark
-// (its regular part, the bicubic B-spline) on the quad lattice. Throws InputError that lists them.
-Mask namedMask(std::string_view name);
-const std::vector<std::string>& maskNames();
-
-// Loop-like: a vertex node gets 1 - 6 alpha of its own and alpha of each neighbour, an edge node 1/2 - gamma
-// of its ends and gamma of the two opposite. Loop is alpha = 1/16, gamma = 1/8. (Litke's mask is of this
-// family; its numbers stand in a figure that we do not have, so the pair is the caller's to give.)
-Mask loopLike(const Rational& alpha, const Rational& gamma);
-
-// B-spline of this degree on the line, mask binomial(degree + 1, k) / 2^degree. REQUIRES: degree >= 1.
-Mask bspline(int degree);
-
-// The user's own. On the line: the taps in order, with the middle one (or the left of the two middle ones) on
-// the vertex node. Else: the values in spiral order (ring k starts at (0, k) and runs clockwise). Throws
-// InputError when there is no tap, or only zeros.
-Mask customMask(Lattice lattice, const std::vector<Rational>& values);
 
 }  // namespace isowave::subdivision

@@ -128,10 +128,23 @@ Rational Diagram::normSquared() const {
     return total;
 }
 
+Rational Diagram::largest() const {
+    Rational best = 0;
+    for (const auto& [node, value] : values_)
+        if (abs(value) > abs(best)) best = value;
+    return best;
+}
+
 int Diagram::width(Lattice lattice, Node centre) const {
     int widest = 0;
     for (const auto& [node, value] : values_) widest = std::max(widest, distance(lattice, centre, node));
     return widest;
+}
+
+Integer commonDenominator(const Diagram& diagram) {
+    Integer common = 1;
+    for (const auto& [node, value] : diagram) common = lcm(common, Integer(denominator(value)));
+    return common;
 }
 
 Rational inner(const Diagram& a, const Diagram& b) {

@@ -6,7 +6,7 @@
 // change when points are renamed, and shifting a diagram by 2t is what moving it to the coarse node t means.
 //
 //   lattice      node      neighbours                     drawn at             a ball of width w has
-//   Line         (x, 0)    +-(1,0)                        x                    2w + 1 nodes
+//   Line         (x, 0)    +-(1,0)                        (x, 0)               2w + 1 nodes
 //   Triangular   (i, j)    +-(1,0), +-(0,1), +-(-1,1)     (i + j/2, j sqrt3/2) 1 + 3w(w + 1) nodes
 //   Quad         (i, j)    the eight around               (i, j)               (2w + 1)^2 nodes
 //
@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "isowave/filters.h"
 #include "subdivision/filters/rational.h"
 
 namespace isowave::subdivision {
@@ -33,8 +34,6 @@ inline Node operator*(int s, Node a) { return {s * a.x, s * a.y}; }
 
 // The fine node 2t of a coarse node t is its vertex node; the others are edge nodes (faces too, on Quad).
 inline bool isVertexNode(Node fine) { return fine.x % 2 == 0 && fine.y % 2 == 0; }
-
-enum class Lattice { Line, Triangular, Quad };
 
 // "line", "triangular", "quad".
 const char* name(Lattice lattice);
@@ -73,6 +72,8 @@ class Diagram {
 
     Rational sum() const;
     Rational normSquared() const;
+    // The value that is farthest from 0, the first of equals; 0 for an empty diagram.
+    Rational largest() const;
     // Number of the outermost ring around the centre that holds a value; 0 for an empty diagram.
     int width(Lattice lattice, Node centre = {}) const;
 
@@ -85,6 +86,9 @@ class Diagram {
   private:
     std::map<Node, Rational> values_;
 };
+
+// The least common denominator of all values; 1 for an empty diagram.
+Integer commonDenominator(const Diagram& diagram);
 
 // The sum of products over the nodes that both hold: one entry of a product of matrices.
 Rational inner(const Diagram& a, const Diagram& b);

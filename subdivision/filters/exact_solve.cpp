@@ -41,8 +41,8 @@ Echelon eliminate(IntegerMatrix rows, Eliminate where) {
     e.rows = std::move(rows);
     for (std::size_t k = 0; k < e.rows.size(); ++k) e.origin.push_back(k);
     const std::size_t width = e.rows.empty() ? 0 : e.rows[0].size();
-    std::size_t done =
-        0;  // invariant: rows [0, done) have their pivots, rows [done, end) are 0 left of column c
+    // invariant: rows [0, done) have their pivots, rows [done, end) are 0 left of column c
+    std::size_t done = 0;
     for (std::size_t c = 0; c < width && done < e.rows.size(); ++c) {
         std::size_t chosen = done;
         while (chosen < e.rows.size() && e.rows[chosen][c] == 0) ++chosen;

@@ -1,7 +1,8 @@
+#include "subdivision/filters/masks.h"
+
 #include <cassert>
 
 #include "isowave/error.h"
-#include "subdivision/filters/construct.h"
 
 namespace isowave::subdivision {
 

@@ -1,33 +1,25 @@
-// Height fields and point grids in files: NumPy arrays and ESRI ASCII grids. Pictures are in picture_files.h.
+// Height fields and grids of points, and the files that hold them.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <string>
-#include <vector>
+
+#include "isowave/subdivision.h"
 
 namespace isowave::subdivision {
 
-struct Grid {
-    std::size_t rows = 0, columns = 0, channels = 1;
-    std::vector<double> values;  // row by row, the channels of a sample together
-
-    double at(std::size_t row, std::size_t column, std::size_t channel = 0) const {
-        return values[(row * columns + column) * channels + channel];
-    }
-};
-
-// .npy: two axes (heights), or three with at most four channels last; booleans, integers up to 64 bits and
-// floats of
-//   32 or 64, either byte order, C or Fortran order.
-// .asc: ESRI ASCII grid (ncols, nrows, xll.., yll.., cellsize, NODATA_value, then the rows from the top).
-// Throws InputError: truncated, another type or shape, samples without data (how many, and where the first
-// is).
+// By the name's end:
+//   .npy              two axes (heights), or three with at most four channels last
+//   .asc              ESRI ASCII grid
+//   .png .tif .tiff   heights as stored; colours become their luminance
+// io/picture says which kinds of each are read. Throws InputError: damaged, fewer than 2 rows or columns, samples that
+// are transparent, without data or not finite (how many, and where the first is).
 Grid readGrid(const std::filesystem::path& path);
-Grid parseNpy(const std::string& bytes, const std::string& name);
-Grid parseAsc(const std::string& text, const std::string& name);
 
-// NumPy, float64, version 1.0: shape (rows, columns) or (rows, columns, channels).
+// NumPy, float64: shape (rows, columns) or (rows, columns, channels).
 std::string npyBytes(const Grid& grid);
+// 8-bit grey PNG of channel 0, from `black` to `white`, of which either may be the larger; what is not finite becomes
+// white.
+std::string pngBytes(const Grid& grid, double black, double white);
 
 }  // namespace isowave::subdivision

@@ -20,7 +20,7 @@ Patch Patch::triangle(int n) { return {Kind::Triangle, n, n}; }
 Patch Patch::hexagon(int n) { return {Kind::Hexagon, n, n}; }
 Patch Patch::torus(int a, int b) { return {Kind::Torus, a, b}; }
 
-Patch Patch::refined() const { return {kind_, 2 * a_, 2 * b_}; }
+Patch Patch::subdivided() const { return {kind_, 2 * a_, 2 * b_}; }
 bool Patch::canCoarsen() const { return a_ % 2 == 0 && b_ % 2 == 0; }
 Patch Patch::coarsened() const {
     assert(canCoarsen());

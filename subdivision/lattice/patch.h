@@ -26,7 +26,7 @@ class Patch {
     static Patch hexagon(int n);
     static Patch torus(int a, int b);
 
-    Patch refined() const;
+    Patch subdivided() const;
     // REQUIRES: canCoarsen().
     Patch coarsened() const;
     // All side lengths are even.
@@ -54,8 +54,8 @@ class Patch {
     // Steps to each side (six places; a side that the patch does not have is farther than any other).
     // 0 on the side itself. Two zeros: a corner.
     std::array<int, 6> distances(Node node) const { return distances(a_, b_, node); }
-    // refined().distances(fine), without making that patch.
-    std::array<int, 6> refinedDistances(Node fine) const { return distances(2 * a_, 2 * b_, fine); }
+    // subdivided().distances(fine), without making that patch.
+    std::array<int, 6> fineDistances(Node fine) const { return distances(2 * a_, 2 * b_, fine); }
     static constexpr int kFar = 1 << 28;
 
     // "parallelogram 8 x 4", "hexagon 5": for messages.

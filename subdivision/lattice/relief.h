@@ -1,20 +1,11 @@
-// A relief as a surface with levels: height fields and point grids on the triangular lattice (B section 11).
+// A relief as a surface with levels: height fields and point grids on the triangular lattice (B section 11). The two
+// layouts of samples are described at ReliefLayout, isowave/subdivision.h.
 #pragma once
 
-#include "subdivision/lattice/grid_files.h"
+#include "isowave/subdivision.h"
 #include "subdivision/lattice/surface.h"
 
 namespace isowave::subdivision {
-
-// How samples become nodes.
-//   Rows       sample (row, column) is the node (column, row): every sample is used, and one diagonal of each
-//   square is
-//              an edge. A parallelogram patch.
-//   Quincunx   every second sample, alternating from row to row, as B section 11 does: (row, column) with row
-//   + column
-//              even is the node i = (column - row)/2, j = row, so that neighbours stand at equal angles when
-//              columns are half as far apart as rows times 2/sqrt 3. A hexagonal patch from the middle.
-enum class ReliefLayout { Rows, Quincunx };
 
 // The largest middle part whose sides can be halved `levels` times. Throws InputError when there is none.
 SurfaceField reliefField(const Grid& grid, ReliefLayout layout, int levels);
@@ -23,8 +14,8 @@ SurfaceField reliefField(const Grid& grid, ReliefLayout layout, int levels);
 // outside the hexagon, and fills the samples between with the mean of their neighbours in the row.
 Grid reliefPicture(const SurfaceField& field, ReliefLayout layout);
 
-// |detail| at the edge nodes of a level, 0 at vertex nodes (with channels: the length). REQUIRES: 0 <= level
-// < levels().
+// |detail| at the edge nodes of a level, 0 at vertex nodes (with channels: the length).
+// REQUIRES: 0 <= level < levels().
 SurfaceField detailField(const SurfaceLevels& levels, int level);
 
 // Light from the upper left on a height field, 0 to 1; `slope` is in values a sample for a 45 degree slope.

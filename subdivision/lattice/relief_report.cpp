@@ -1,12 +1,12 @@
 #include "subdivision/lattice/relief_report.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <limits>
+#include <string>
+#include <utility>
 
-#include "subdivision/lattice/picture_files.h"
+#include "subdivision/lattice/relief.h"
 
 namespace isowave::subdivision {
 
@@ -46,7 +46,7 @@ double percentile99(std::vector<double> values) {
 }
 
 // The rms step between neighbours in a row: a slope that shades well at this level.
-double typicalStep(const Grid& heights) {
+double rmsStep(const Grid& heights) {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t r = 0; r < heights.rows; ++r) {
@@ -60,16 +60,8 @@ double typicalStep(const Grid& heights) {
     return count == 0 || sum == 0 ? 1 : std::sqrt(sum / static_cast<double>(count));
 }
 
-}  // namespace
-
-ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) {
-    SurfaceFilters filters(surfaceScheme(options.scheme));
-    const SurfaceField field = reliefField(grid, options.layout, options.levels);
-    const SurfaceLevels made = decompose(field, filters, options.levels);
-
-    ReliefReport report;
-    report.scheme = filters.scheme().name;
-    const Grid heights = lastChannel(reliefPicture(field, options.layout));
+// What the values are like: for pictures.
+void measureHeights(const Grid& heights, ReliefReport& report) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const double v : heights.values) {
         if (std::isnan(v)) continue;
@@ -78,91 +70,70 @@ ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) 
     }
     report.range[0] = low;
     report.range[1] = high;
+    report.rmsStep = rmsStep(heights);
+}
 
-    const double slope = 2 * typicalStep(heights);
-    const auto draw = [&](const std::string& name, const std::string& shade, const Grid& picture,
-                          double step) {
-        const Grid shown = lastChannel(picture);
-        report.files[name] = pngBytes(shown, low, high);
-        report.files[shade] = pngBytes(shaded(shown, step), 0, 1);
-    };
-    for (int k = 0; k <= options.levels; ++k) {
-        const SurfaceField level = reconstruct(made, filters, k);
-        const Grid picture = reliefPicture(level, options.layout);
-        ReliefReport::Level row;
-        row.patch = level.patch.name();
-        row.nodes = level.patch.size();
-        row.suppressedRms = rms(difference(subdivided(made, filters, k).values, field.values));
-        report.files[fmt::format("level_{}.npy", k)] = npyBytes(picture);
-        // A sample of level k is 2^k samples wide: the same slope is 2^k times the step.
-        draw(fmt::format("level_{}.png", k), fmt::format("shade_{}.png", k), picture,
-             slope * std::ldexp(1.0, k));
-        if (k < options.levels) {
-            const auto& details = made.details[static_cast<std::size_t>(k)];
-            row.detailRms = rms(details);
-            row.detailLargest = largest(details);
-            const SurfaceField lengths = detailField(made, k);
-            const double dark = percentile99(lengths.values);
-            report.files[fmt::format("details_{}.png", k)] =
-                pngBytes(reliefPicture(lengths, options.layout), dark > 0 ? dark : 1, dark > 0 ? 0 : 2);
-        }
-        if (k == 0) {
-            report.roundTrip = largest(difference(level.values, field.values));
-            report.files["reconstructed.npy"] = npyBytes(picture);
-        }
-        report.levels.push_back(row);
-    }
-    const Grid without = reliefPicture(subdivided(made, filters, options.levels), options.layout);
-    report.files["suppressed.npy"] = npyBytes(without);
-    draw("suppressed.png", "suppressed_shade.png", without, slope);
+ReliefReport::Level levelOf(const SurfaceLevels& parts, SurfaceFilters& filters, const SurfaceField& field,
+                            ReliefLayout layout, int k) {
+    const SurfaceField level = reconstruct(parts, filters, k);
+    ReliefReport::Level row;
+    row.patch = level.patch.name();
+    row.nodes = level.patch.size();
+    row.suppressedRms = rms(difference(subdivided(parts, filters, k).values, field.values));
+    row.heights = reliefPicture(level, layout);
+    if (k == parts.levels()) return row;
+    const auto& details = parts.details[static_cast<std::size_t>(k)];
+    row.detailRms = rms(details);
+    row.detailLargest = largest(details);
+    const SurfaceField lengths = detailField(parts, k);
+    row.detailPercentile99 = percentile99(lengths.values);
+    row.detailLengths = reliefPicture(lengths, layout);
+    return row;
+}
 
-    if (options.compare) {
-        for (const auto& name : surfaceSchemeNames()) {
-            SurfaceFilters others(surfaceScheme(name));
-            const SurfaceLevels levels = decompose(field, others, options.levels);
-            report.compared[name] =
-                rms(difference(subdivided(levels, others, options.levels).values, field.values));
-        }
+}  // namespace
+
+ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) {
+    SurfaceFilters filters(surfaceScheme(options.scheme));
+    const SurfaceField field = reliefField(grid, options.layout, options.levels);
+    const SurfaceLevels parts = decompose(field, filters, options.levels);
+    ReliefReport report;
+    report.scheme = filters.scheme().name;
+    measureHeights(lastChannel(reliefPicture(field, options.layout)), report);
+    for (int k = 0; k <= options.levels; ++k)
+        report.levels.push_back(levelOf(parts, filters, field, options.layout, k));
+    report.roundTrip = largest(difference(reconstruct(parts, filters, 0).values, field.values));
+    report.suppressed = reliefPicture(subdivided(parts, filters, options.levels), options.layout);
+    if (!options.compare) return report;
+    for (const auto& name : surfaceSchemeNames()) {
+        SurfaceFilters others(surfaceScheme(name));
+        const SurfaceLevels levels = decompose(field, others, options.levels);
+        report.compared[name] =
+            rms(difference(subdivided(levels, others, options.levels).values, field.values));
     }
     return report;
 }
 
-std::string text(const ReliefReport& report) {
-    std::string out = fmt::format("{}, values {:.6g} to {:.6g}, round trip {:.1e}\n\n", report.scheme,
-                                  report.range[0], report.range[1], report.roundTrip);
-    out += "level      nodes   details: rms    largest   without finer details: rms   patch\n";
+void forEachPicture(const ReliefReport& report, const PictureVisitor& visit) {
+    const double low = report.range[0], high = report.range[1];
+    const double slope = 2 * report.rmsStep;
+    const auto draw = [&](const std::string& name, const std::string& shade, const Grid& picture,
+                          double step) {
+        const Grid shown = lastChannel(picture);
+        visit(name, shown, low, high);
+        visit(shade, shaded(shown, step), 0, 1);
+    };
     for (std::size_t k = 0; k < report.levels.size(); ++k) {
-        const auto& level = report.levels[k];
-        const bool coarsest = k + 1 == report.levels.size();
-        out += fmt::format("{:5} {:10}   {:>12} {:>10}   {:26.6g}   {}\n", k, level.nodes,
-                           coarsest ? "" : fmt::format("{:.4g}", level.detailRms),
-                           coarsest ? "" : fmt::format("{:.4g}", level.detailLargest), level.suppressedRms,
-                           level.patch);
+        const std::string number = std::to_string(k);
+        // A sample of level k is 2^k samples wide: the same slope is 2^k times the step.
+        draw("level_" + number, "shade_" + number, report.levels[k].heights,
+             slope * std::ldexp(1.0, static_cast<int>(k)));
+        const Grid& lengths = report.levels[k].detailLengths;
+        if (lengths.values.empty()) continue;
+        const double dark = report.levels[k].detailPercentile99;
+        visit("details_" + number, lengths, dark > 0 ? dark : 1, dark > 0 ? 0 : 2);
     }
-    if (!report.compared.empty()) {
-        out += "\nwithout any details, rms by scheme\n";
-        for (const auto& [name, error] : report.compared)
-            out += fmt::format("  {:<20} {:.6g}\n", name, error);
-    }
-    return out;
-}
-
-std::string json(const ReliefReport& report) {
-    nlohmann::ordered_json j = {{"version", 1},
-                                {"scheme", report.scheme},
-                                {"range", {report.range[0], report.range[1]}},
-                                {"round_trip", report.roundTrip}};
-    auto levels = nlohmann::ordered_json::array();
-    for (const auto& level : report.levels) {
-        levels.push_back({{"patch", level.patch},
-                          {"nodes", level.nodes},
-                          {"detail_rms", level.detailRms},
-                          {"detail_largest", level.detailLargest},
-                          {"suppressed_rms", level.suppressedRms}});
-    }
-    j["levels"] = levels;
-    if (!report.compared.empty()) j["compared"] = report.compared;
-    return j.dump(1) + "\n";
+    draw("suppressed", "suppressed_shade", report.suppressed, slope);
 }
 
 }  // namespace isowave::subdivision

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "isowave/error.h"
-#include "subdivision/curves/curve_schemes.h"
+#include "subdivision/filters/construct.h"
+#include "subdivision/filters/four_point.h"
+#include "subdivision/filters/masks.h"
 
 namespace isowave::subdivision {
 
@@ -16,8 +18,7 @@ namespace {
 using Family = SurfaceScheme::Family;
 constexpr Lattice kLattice = Lattice::Triangular;
 
-// --- where a node is
-// ----------------------------------------------------------------------------------------
+// ---- where a node is ----
 
 int sidesAt(const Patch& patch, Node node) {
     int count = 0;
@@ -63,8 +64,7 @@ SidePlace placeOnSide(const Patch& patch, Node node) {
     return place;
 }
 
-// --- P
-// ------------------------------------------------------------------------------------------------------
+// ---- P ----
 
 // The coarse edge in whose middle a fine node lies.
 struct Edge {
@@ -140,8 +140,7 @@ Diagram maskRow(const Mask& mask, Node fine) {
     return row;
 }
 
-// --- A
-// ------------------------------------------------------------------------------------------------------
+// ---- A ----
 
 FiniteSubdivision around(const SurfaceScheme& scheme, const Patch& coarse, const std::vector<Node>& window) {
     // The rows on the window: all that the equations of A see.
@@ -186,7 +185,7 @@ std::vector<Node> ballWindow(const Patch& fine, Node node, int width, bool oneTa
 
 Diagram rowOfA(const SurfaceScheme& scheme, const Patch& coarse, Node node, int width, int steps,
                bool oneTap) {
-    const Patch fine = coarse.refined();
+    const Patch fine = coarse.subdivided();
     switch (sidesAt(coarse, node)) {
         case 0:
             return leastNorm(scheme, coarse, node, ballWindow(fine, node, width, oneTap));
@@ -197,8 +196,7 @@ Diagram rowOfA(const SurfaceScheme& scheme, const Patch& coarse, Node node, int 
     }
 }
 
-// --- systems
-// ------------------------------------------------------------------------------------------------
+// ---- systems ----
 
 Diagram wrapped(const Diagram& diagram, const Patch& patch) {
     Diagram result;
@@ -292,7 +290,7 @@ Diagram surfaceRowOfA0(const SurfaceScheme& scheme, const Patch& coarse, Node no
 }
 
 System surfaceSystem(const SurfaceScheme& scheme, const Patch& coarse) {
-    const Patch fine = coarse.refined();
+    const Patch fine = coarse.subdivided();
     FiniteSubdivision p;
     for (const Node n : fine.nodes()) p.addRow(n, wrapped(surfaceRowOfP(scheme, coarse, n), coarse));
     System system;
@@ -327,8 +325,7 @@ System surfaceSystem(const SurfaceScheme& scheme, const Patch& coarse) {
     return system;
 }
 
-// --- doubles
-// ------------------------------------------------------------------------------------------------
+// ---- doubles ----
 
 namespace {
 
@@ -391,7 +388,7 @@ void addScaled(double weight, const double* from, std::size_t count, std::size_t
 // out = map in. REQUIRES: sizes as the patches say.
 void apply(Map map, SurfaceFilters& filters, const Patch& coarse, int channels, const std::vector<double>& in,
            std::vector<double>& out) {
-    const Patch fine = coarse.refined();
+    const Patch fine = coarse.subdivided();
     const Patch &input = map == Map::P ? coarse : fine, &output = map == Map::P ? fine : coarse;
     const auto ch = static_cast<std::size_t>(channels);
     assert(in.size() == input.size() * ch);
@@ -488,7 +485,7 @@ std::vector<double> spread(const std::vector<double>& details, SurfaceFilters& f
 }
 
 SurfaceField doubled(SurfaceField coarse, const std::vector<double>* details, SurfaceFilters& filters) {
-    SurfaceField fine{coarse.patch.refined(), coarse.channels, {}};
+    SurfaceField fine{coarse.patch.subdivided(), coarse.channels, {}};
     std::vector<double> g;
     if (details) {
         g = spread(*details, filters, coarse, fine.patch);
@@ -527,14 +524,14 @@ void checkScheme(const SurfaceLevels& levels, const SurfaceFilters& filters) {
         "levels", "were made by the scheme '" + levels.scheme + "', not by '" + filters.scheme().name + "'");
 }
 
-SurfaceField climb(const SurfaceLevels& levels, SurfaceFilters& filters, int level, int lastWithDetails) {
+SurfaceField rebuilt(const SurfaceLevels& levels, SurfaceFilters& filters, int level, int lastWithDetails) {
     checkScheme(levels, filters);
     checkField(levels.coarse);
     SurfaceField field = levels.coarse;
     for (int k = levels.levels() - 1; k >= level; --k) {
         const auto& details = levels.details[static_cast<std::size_t>(k)];
         const std::size_t needed =
-            (field.patch.refined().size() - field.patch.size()) * static_cast<std::size_t>(field.channels);
+            (field.patch.subdivided().size() - field.patch.size()) * static_cast<std::size_t>(field.channels);
         if (details.size() != needed) {
             throw InputError("levels", "details of level " + std::to_string(k) + " hold " +
                                            std::to_string(details.size()) + " numbers, not " +
@@ -567,7 +564,7 @@ const SurfaceFilters::Stencil& SurfaceFilters::at(Map map, const Patch& coarse, 
         key[1] = node.x & 1;
         key[2] = node.y & 1;
     }
-    const auto distances = map == Map::P ? coarse.refinedDistances(node) : coarse.distances(node);
+    const auto distances = map == Map::P ? coarse.fineDistances(node) : coarse.distances(node);
     for (std::size_t s = 0; s < 6; ++s) key[s + 3] = std::min(distances[s], far);
     const auto [place, isNew] = stencils_.try_emplace(key);
     if (isNew) {
@@ -582,7 +579,7 @@ const SurfaceFilters::Stencil& SurfaceFilters::at(Map map, const Patch& coarse, 
 
 Patch SurfaceLevels::patch(int level) const {
     Patch patch = coarse.patch;
-    for (int k = levels(); k > level; --k) patch = patch.refined();
+    for (int k = levels(); k > level; --k) patch = patch.subdivided();
     return patch;
 }
 
@@ -608,12 +605,12 @@ SurfaceLevels decompose(const SurfaceField& field, SurfaceFilters& filters, int 
 
 SurfaceField reconstruct(const SurfaceLevels& levels, SurfaceFilters& filters, int level) {
     checkLevel(levels, level);
-    return climb(levels, filters, level, 0);
+    return rebuilt(levels, filters, level, 0);
 }
 
 SurfaceField subdivided(const SurfaceLevels& levels, SurfaceFilters& filters, int from) {
     checkLevel(levels, from);
-    return climb(levels, filters, 0, from);
+    return rebuilt(levels, filters, 0, from);
 }
 
 }  // namespace isowave::subdivision

@@ -2,8 +2,8 @@
 // sides and corners. Bartels and Samavati (B): sections 6 to 10.
 //
 //   scheme               A inside                    along a side                        P across a side
-//   butterfly-trivial    the vertex node             the vertex node                     reflection, see
-//   below butterfly-W (3, 4)   least norm, W rings         least norm, 9 points of the side    reflection
+//   butterfly-trivial    the vertex node             the vertex node                     reflection, see below
+//   butterfly-W (3, 4)   least norm, W rings         least norm, 9 points of the side    reflection
 //   loop-W (1, 2, 3)     least norm, W rings         cubic B-spline, 3 or 7 points       as inside
 //   loop-like:a,g        width 1, with alpha, gamma  cubic B-spline, 3 points            as inside
 //
@@ -14,7 +14,7 @@
 // *reflection*: the wing across the triangle (a, b, c) beyond the side (a, c) is a + c - b, the fourth corner
 // of the parallelogram. (Mirroring at the side's line instead, also found in print, gives other filters: the
 // centre of the row one level in becomes 603803769/805874419 instead of 10994599/16197945, and B(10.1) is not
-// reproduced.) A inside takes the part of its ball that lies on the patch.
+// reproduced.) Inside, A takes the part of its ball that lies on the patch.
 //
 // No Q is needed to put a surface together. With A0 the left inverse that B and Q0 were made from,
 //     d = (f - P A0 f) at edge nodes,      g = Q0 d,      f = P (c - A g) + g,
@@ -29,7 +29,8 @@
 #include <string_view>
 #include <vector>
 
-#include "subdivision/filters/finite.h"
+#include "isowave/subdivision.h"
+#include "subdivision/filters/finite_subdivision.h"
 #include "subdivision/lattice/patch.h"
 
 namespace isowave::subdivision {
@@ -44,10 +45,8 @@ struct SurfaceScheme {
 
 // "butterfly-trivial", "butterfly-3", "loop-1", "loop-like:1/16,1/8". Throws InputError that lists them.
 SurfaceScheme surfaceScheme(std::string_view name);
-// The ones that tables and tests walk.
-const std::vector<std::string>& surfaceSchemeNames();
 
-// Diagrams of one node, exactly. `coarse` is the coarse patch, fine nodes are those of coarse.refined(). On a
+// Diagrams of one node, exactly. `coarse` is the coarse patch, fine nodes are those of coarse.subdivided(). On a
 // torus they are those of the plane: wrap them around.
 Diagram surfaceRowOfP(const SurfaceScheme& scheme, const Patch& coarse, Node fine);  // over coarse nodes
 Diagram surfaceRowOfA(const SurfaceScheme& scheme, const Patch& coarse, Node coarseNode);  // over fine nodes
@@ -73,9 +72,9 @@ struct SurfaceLevels {
     Patch patch(int level) const;
 };
 
-// The stencils of a scheme in doubles. They depend on the place only through the distances to the sides, as
-// far as a filter sees; each kind of place is solved for once, when it is first met. Not for several threads
-// at once.
+// The stencils of a scheme in doubles. They depend on the place only through the distances to the sides, as far as a
+// filter sees: a stencil is solved for once for all places with the same distances, when the first of them is met. Not
+// for several threads at once.
 class SurfaceFilters {
   public:
     explicit SurfaceFilters(const SurfaceScheme& scheme) : scheme_(scheme) {}
@@ -89,11 +88,10 @@ class SurfaceFilters {
     enum class Map { P, A, A0 };
     // The stencil at a node of the map's output.
     const Stencil& at(Map map, const Patch& coarse, Node node);
-    // Farther than this from every side (in steps of the output's patch) all nodes of one parity have the
-    // same one.
+    // Farther than this from every side (in steps of the output's patch) all nodes of one parity have the same stencil.
     int reach(Map map) const;
-    // Kinds of places met so far.
-    std::size_t kinds() const { return stencils_.size(); }
+    // Stencils solved for so far.
+    std::size_t stencilCount() const { return stencils_.size(); }
 
   private:
     SurfaceScheme scheme_;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "subdivision/meshes/catmull_clark_wide.h"
-
 namespace isowave::subdivision {
 namespace {
 
@@ -159,7 +157,7 @@ std::size_t CatmullClarkStep::ambiguousComponents() const {
 
 // ---- P ----
 
-PolygonMesh CatmullClarkStep::refined() const {
+PolygonMesh CatmullClarkStep::fineMesh() const {
     PolygonMesh fine;
     fine.points.resize(fineSize());
     fine.corners.reserve(4 * adjacency_.corners());
@@ -441,15 +439,6 @@ Vec3 CatmullClarkStep::tensorOfFace(Index f, std::span<const Vec3> details) cons
                1.0 / 4 * (edge(c2) + edge(c3)) + 3.0 / 16 * (face(c1) + face(c3)) + 1.0 / 16 * face(c2);
     }
     return sum;
-}
-
-std::unique_ptr<SubdivisionStep> catmullClarkStep(const PolygonMesh& coarse, std::string_view variant) {
-    if (variant == "wide") return std::make_unique<WideCatmullClarkStep>(coarse);
-    auto kind = CatmullClarkVariant::refined;
-    if (variant == "trial") kind = CatmullClarkVariant::trial;
-    if (variant == "unscaled") kind = CatmullClarkVariant::unscaled;
-    if (variant == "tensor") kind = CatmullClarkVariant::tensor;
-    return std::make_unique<CatmullClarkStep>(coarse, kind);
 }
 
 }  // namespace isowave::subdivision

@@ -60,7 +60,7 @@ class CatmullClarkStep final : public SubdivisionStep {
     // REQUIRES: defects(coarse).empty().
     CatmullClarkStep(const PolygonMesh& coarse, CatmullClarkVariant variant);
 
-    PolygonMesh refined() const override;
+    PolygonMesh fineMesh() const override;
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override;
     Parts decompose(std::span<const Vec3> fine) const override;
     std::vector<Vec3> allDetails(std::span<const Vec3> coarse, std::span<const Vec3> stored) const override;
@@ -131,8 +131,5 @@ class CatmullClarkStep final : public SubdivisionStep {
     std::vector<bool> evenTree_;     // vertices of trees without odd cycles
     std::vector<bool> tensorFace_, tensorVertex_;
 };
-
-// For MeshScheme::step.
-std::unique_ptr<SubdivisionStep> catmullClarkStep(const PolygonMesh& coarse, std::string_view variant);
 
 }  // namespace isowave::subdivision

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "subdivision/filters/construct.h"
+#include "subdivision/filters/masks.h"
 
 namespace isowave::subdivision {
 
@@ -70,8 +71,7 @@ void WideCatmullClarkStep::findKinds(const PolygonMesh& coarse) {
     for (const Index v : coarse.pinned) corner_[v] = true;
 }
 
-// --- P, as catmull_clark.h has it
-// -----------------------------------------------------------------------------------
+// ---- P, as catmull_clark.h has it ----
 
 void WideCatmullClarkStep::addFaceRow(Index f, double factor, Taps& row) const {
     const Index size = mesh().faceSize(f);
@@ -111,8 +111,7 @@ void WideCatmullClarkStep::rowOfP(Index fine, Taps& row) const {
     }
 }
 
-// --- windows
-// --------------------------------------------------------------------------------------------------------
+// ---- windows ----
 
 std::vector<Index> WideCatmullClarkStep::window(Index v) const {
     return sharpAt_[v].size() == 2 ? curveWindow(v) : ballWindow(v);
@@ -197,8 +196,7 @@ void WideCatmullClarkStep::findRows() {
     }
 }
 
-// --- points
-// ---------------------------------------------------------------------------------------------------------
+// ---- points ----
 
 // Four quarters: the fine points i d + j d', i >= 1, j >= 0, for each direction d and the next one, d'. The coarse
 // vertex (a, b) is at 2a, 2b; the halfedge of direction d from there has its face on the left, towards d'.

@@ -22,7 +22,7 @@ class WideCatmullClarkStep final : public SubdivisionStep {
     // REQUIRES: defects(coarse).empty().
     explicit WideCatmullClarkStep(const PolygonMesh& coarse);
 
-    PolygonMesh refined() const override { return trial_->refined(); }
+    PolygonMesh fineMesh() const override { return trial_->fineMesh(); }
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override {
         return trial_->subdivide(coarse);
     }

@@ -12,21 +12,21 @@ namespace isowave::subdivision {
 namespace {
 
 // The steps from the base upwards, each over the connectivity that the one below makes.
-struct Ladder {
-    std::vector<std::unique_ptr<SubdivisionStep>> steps;
+struct Steps {
+    std::vector<std::unique_ptr<SubdivisionStep>> list;
     PolygonMesh finest;  // connectivity alone; its points are 0 or the base's
 };
 
-Ladder climb(const PolygonMesh& base, const MeshScheme& scheme, std::string_view variant, int count,
-             const Progress& progress) {
-    Ladder ladder;
-    ladder.finest = base;
+Steps stepsFrom(const PolygonMesh& base, const MeshScheme& scheme, std::string_view variant, int count,
+                const Progress& progress) {
+    Steps steps;
+    steps.finest = base;
     for (int k = 0; k < count; ++k) {
         progress("connecting", double(k) / count);
-        ladder.steps.push_back(scheme.step(ladder.finest, variant));
-        ladder.finest = ladder.steps.back()->refined();
+        steps.list.push_back(scheme.step(steps.finest, variant));
+        steps.finest = steps.list.back()->fineMesh();
     }
-    return ladder;
+    return steps;
 }
 
 // Which corner of the given mesh each corner of the canonical finest mesh is. Level by level from the base, where
@@ -40,12 +40,12 @@ std::vector<Index> canonicalToGiven(const PolygonMesh& given, const std::vector<
     std::iota(corner.begin(), corner.end(), Index{0});
     for (std::size_t k = coarsenings.size(); k-- > 0;) {
         progress("matching", double(coarsenings.size() - 1 - k) / double(coarsenings.size()));
-        PolygonMesh fine = scheme.step(mesh, variant)->refined();
-        std::vector<CornerPair> seeds(corner.size());
+        PolygonMesh fine = scheme.step(mesh, variant)->fineMesh();
+        std::vector<CornerPair> known(corner.size());
         for (std::size_t c = 0; c < corner.size(); ++c)
-            seeds[c] = {fine.faceBegin[c], coarsenings[k].fineCorner[corner[c]]};
+            known[c] = {fine.faceBegin[c], coarsenings[k].fineCorner[corner[c]]};
         corner = correspondingCorners(Adjacency(fine), Adjacency(k == 0 ? given : coarsenings[k - 1].coarse),
-                                      seeds);
+                                      known);
         assert(!corner.empty() && "recover() returned a mesh that does not refine to the one it was given");
         mesh = std::move(fine);
     }
@@ -91,8 +91,8 @@ PolygonMesh reordered(const PolygonMesh& mesh, const FinestOrder& order) {
     return result;
 }
 
-// A base edge that were a crease would have 2^count creases in the finest mesh, in the order of the base's: so the mesh
-// in which every edge is one says which fine edges lie along which base edge.
+// Which fine edges lie along which base edge? Let every base edge be a crease: `count` steps make 2^count creases of each,
+// in the order of the base's.
 void addCreases(const PolygonMesh& given, const std::vector<Index>& corner, const MeshScheme& scheme,
                 int count, double degrees, PolygonMesh& base) {
     PolygonMesh all = base;
@@ -100,7 +100,7 @@ void addCreases(const PolygonMesh& given, const std::vector<Index>& corner, cons
     const Adjacency coarse(base);
     for (Index e = 0; e < coarse.edges(); ++e)
         all.creases.push_back({coarse.vertex(coarse.edgeCorner(e)), coarse.target(coarse.edgeCorner(e)), 1});
-    const PolygonMesh finest = climb(all, scheme, scheme.variants.front(), count, {}).finest;
+    const PolygonMesh finest = stepsFrom(all, scheme, scheme.variants.front(), count, {}).finest;
 
     std::vector<Index> ofVertex(finest.vertexCount());
     for (std::size_t c = 0; c < corner.size(); ++c) ofVertex[finest.corners[c]] = given.corners[corner[c]];
@@ -140,16 +140,16 @@ Hierarchy decompose(const PolygonMesh& mesh, const MeshScheme& scheme, const Dec
     result.base = coarsenings.back().coarse;
     const auto corner = canonicalToGiven(mesh, coarsenings, scheme, result.variant, progress);
     if (options.creaseAngle) addCreases(mesh, corner, scheme, count, *options.creaseAngle, result.base);
-    const Ladder ladder = climb(result.base, scheme, result.variant, count, progress);
-    result.order = orderOf(ladder.finest, mesh, corner);
+    const Steps steps = stepsFrom(result.base, scheme, result.variant, count, progress);
+    result.order = orderOf(steps.finest, mesh, corner);
 
     std::vector<Vec3> points(mesh.vertexCount());
     for (std::size_t c = 0; c < corner.size(); ++c)
-        points[ladder.finest.corners[c]] = mesh.points[mesh.corners[corner[c]]];
-    result.details.resize(ladder.steps.size());
-    for (std::size_t k = ladder.steps.size(); k-- > 0;) {
-        progress("decomposing", double(ladder.steps.size() - 1 - k) / double(ladder.steps.size()));
-        auto parts = ladder.steps[k]->decompose(points);
+        points[steps.finest.corners[c]] = mesh.points[mesh.corners[corner[c]]];
+    result.details.resize(steps.list.size());
+    for (std::size_t k = steps.list.size(); k-- > 0;) {
+        progress("decomposing", double(steps.list.size() - 1 - k) / double(steps.list.size()));
+        auto parts = steps.list[k]->decompose(points);
         result.details[k] = std::move(parts.stored);
         points = std::move(parts.coarse);
     }
@@ -169,7 +169,7 @@ PolygonMesh rebuilt(const Hierarchy& hierarchy, int steps, const Progress& progr
         progress("reconstructing", double(k) / count);
         const auto step = scheme.step(mesh, hierarchy.variant);
         requireDetails(hierarchy.details[k], *step, k + 1);
-        PolygonMesh fine = step->refined();
+        PolygonMesh fine = step->fineMesh();
         takeStep(*step, mesh.points, hierarchy.details[k], fine);
         mesh = std::move(fine);
     }
@@ -193,11 +193,32 @@ PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int le
         if (4 * std::uint64_t{result.corners.size()} >= kNone)
             throw InputError(fmt::format("is too large to be subdivided {} times; {} will do", levels, k));
         const auto step = scheme.step(result, scheme.variants.front());
-        PolygonMesh fine = step->refined();
+        PolygonMesh fine = step->fineMesh();
         fine.points = step->subdivide(result.points);
         result = std::move(fine);
     }
     return result;
+}
+
+Hierarchy decompose(const PolygonMesh& mesh, std::string_view scheme, const DecomposeOptions& options,
+                    const Progress& progress) {
+    return decompose(mesh, meshScheme(scheme), options, progress);
+}
+
+PolygonMesh subdivided(const PolygonMesh& mesh, std::string_view scheme, int levels,
+                       const Progress& progress) {
+    return subdivided(mesh, meshScheme(scheme), levels, progress);
+}
+
+std::vector<std::string> meshSchemeNames() {
+    std::vector<std::string> names;
+    for (const MeshScheme& scheme : meshSchemes()) names.emplace_back(scheme.name);
+    return names;
+}
+
+std::vector<std::string> meshVariantNames(std::string_view scheme) {
+    const auto& variants = meshScheme(scheme).variants;
+    return {variants.begin(), variants.end()};
 }
 
 void requireSameConnectivity(const PolygonMesh& base, const PolygonMesh& moved) {

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "isowave/error.h"
+#include "subdivision/meshes/hierarchy.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -59,8 +60,8 @@ void turn(std::vector<Vec3>& details, const SubdivisionStep& step, const Polygon
 
 // One step of the original and of the edited mesh, side by side. The details are always the original's: where P is not
 // injective they depend on its coarse points.
-void climb(const SubdivisionStep& step, const std::vector<Vec3>& stored, const PolygonMesh& fine,
-           Frames frames, std::vector<Vec3>& original, std::vector<Vec3>& edited) {
+void reconstructBoth(const SubdivisionStep& step, const std::vector<Vec3>& stored, const PolygonMesh& fine,
+                     Frames frames, std::vector<Vec3>& original, std::vector<Vec3>& edited) {
     const auto details = step.allDetails(original, stored);
     auto turned = details;
     if (frames == Frames::local) turn(turned, step, fine, original, edited);
@@ -77,7 +78,7 @@ PolygonMesh reconstructEdited(const Hierarchy& hierarchy, const std::vector<Vec3
     return rebuilt(hierarchy, steps, progress,
                    [&](const SubdivisionStep& step, const std::vector<Vec3>&, const std::vector<Vec3>& stored,
                        PolygonMesh& fine) {
-                       climb(step, stored, fine, frames, original, edited);
+                       reconstructBoth(step, stored, fine, frames, original, edited);
                        fine.points = edited;
                    });
 }

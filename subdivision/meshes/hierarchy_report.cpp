@@ -1,20 +1,17 @@
 #include "subdivision/meshes/hierarchy_report.h"
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
+#include "subdivision/meshes/hierarchy.h"
 
 namespace isowave::subdivision {
 namespace {
 
-nlohmann::ordered_json errorJson(const PointError& error) {
-    return {{"rms", error.rms}, {"largest", error.largest}};
-}
+constexpr double kShares[] = {0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
 
-// In units of the mesh, and in percent of its diagonal.
-std::string relative(double value, double diagonal) {
-    return diagonal > 0 ? fmt::format("{:.3g} ({:.2g} %)", value, 100 * value / diagonal)
-                        : fmt::format("{:.3g}", value);
+// The errors of an edited mesh are those of its moved base with the details as they stand.
+std::vector<RebuildReport::Share> errorsAfterEdit(Hierarchy hierarchy, const std::vector<Vec3>& moved,
+                                                  const Progress& progress) {
+    hierarchy.base.points = moved;
+    return errorByShare(hierarchy, reconstruct(hierarchy, kAllLevels, progress), progress);
 }
 
 }  // namespace
@@ -29,15 +26,15 @@ DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const Polygo
     report.diagonal = diagonal(mesh.points);
     report.levels.push_back({hierarchy.base.vertexCount(), hierarchy.base.faceCount(), 0, 0, {}});
     for (int k = 0; k <= hierarchy.steps(); ++k) {
-        // One climb for each level: with its details up to there, with none behind.
+        // One reconstruction for each level: with its details up to there, with none behind.
         int at = 0;
-        const auto climb = [&](const SubdivisionStep& step, const std::vector<Vec3>& coarse,
-                               const std::vector<Vec3>& stored, PolygonMesh& fine) {
+        const auto takeStep = [&](const SubdivisionStep& step, const std::vector<Vec3>& coarse,
+                                  const std::vector<Vec3>& stored, PolygonMesh& fine) {
             if (k == 0) report.levels.push_back({fine.vertexCount(), fine.faceCount(), 0, 0, {}});
             fine.points = at++ < k ? step.reconstruct(coarse, stored) : step.subdivide(coarse);
         };
         const PointError error =
-            pointError(rebuilt(hierarchy, kAllLevels, progress, climb).points, mesh.points);
+            pointError(rebuilt(hierarchy, kAllLevels, progress, takeStep).points, mesh.points);
         if (k == hierarchy.steps()) {
             report.roundTrip = error.largest;
             break;
@@ -51,51 +48,11 @@ DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const Polygo
     return report;
 }
 
-std::string text(const DecompositionReport& report) {
-    std::string out = fmt::format(
-        "{}, {}; creases {}, marked corners {}; round trip {:.1e} of the diagonal {:.6g}\n\n", report.scheme,
-        report.variant, report.creases, report.pinned,
-        report.diagonal > 0 ? report.roundTrip / report.diagonal : report.roundTrip, report.diagonal);
-    out +=
-        "subdivisions   vertices      faces   details to the next: rms   largest   to the finest without "
-        "details: rms\n";
-    for (std::size_t k = 0; k < report.levels.size(); ++k) {
-        const auto& level = report.levels[k];
-        const bool finest = k + 1 == report.levels.size();
-        out +=
-            fmt::format("{:12} {:10} {:10}   {:>24} {:>9}   {:>34}\n", k == 0 ? "base" : fmt::format("{}", k),
-                        level.vertices, level.faces, finest ? "" : fmt::format("{:.3g}", level.detailRms),
-                        finest ? "" : fmt::format("{:.3g}", level.detailLargest),
-                        finest ? "" : relative(level.withoutDetails.rms, report.diagonal));
-    }
-    return out;
-}
-
-std::string json(const DecompositionReport& report) {
-    nlohmann::ordered_json j = {{"version", 1},
-                                {"scheme", report.scheme},
-                                {"variant", report.variant},
-                                {"creases", report.creases},
-                                {"pinned", report.pinned},
-                                {"diagonal", report.diagonal},
-                                {"round_trip", report.roundTrip}};
-    auto levels = nlohmann::ordered_json::array();
-    for (const auto& level : report.levels) {
-        levels.push_back({{"vertices", level.vertices},
-                          {"faces", level.faces},
-                          {"detail_rms", level.detailRms},
-                          {"detail_largest", level.detailLargest},
-                          {"without_details", errorJson(level.withoutDetails)}});
-    }
-    j["levels"] = levels;
-    return j.dump(1) + "\n";
-}
-
 std::vector<RebuildReport::Share> errorByShare(const Hierarchy& hierarchy, const PolygonMesh& whole,
                                                const Progress& progress) {
     std::vector<RebuildReport::Share> shares;
     const std::size_t all = detailCount(hierarchy);
-    for (const double share : {0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}) {
+    for (const double share : kShares) {
         Hierarchy part = hierarchy;
         keepLongest(part, static_cast<std::size_t>(share * static_cast<double>(all)));
         shares.push_back({share, nonzeroDetailCount(part),
@@ -104,43 +61,37 @@ std::vector<RebuildReport::Share> errorByShare(const Hierarchy& hierarchy, const
     return shares;
 }
 
-std::string text(const RebuildReport& report) {
-    std::string out =
-        fmt::format("{} vertices, {} faces after {} subdivision{}; {} of {} details", report.vertices,
-                    report.faces, report.levels, report.levels == 1 ? "" : "s", report.kept, report.details);
-    if (report.error.largest > 0) {
-        out += fmt::format("; without the others rms {}, largest {}",
-                           relative(report.error.rms, report.diagonal),
-                           relative(report.error.largest, report.diagonal));
+Rebuilt rebuild(Hierarchy hierarchy, const RebuildOptions& options, const Progress& progress) {
+    const std::vector<Vec3> moved = options.moved.empty() ? hierarchy.base.points : options.moved;
+    const auto build = [&](const Hierarchy& part) {
+        return reconstructEdited(part, moved, kAllLevels, options.frames, progress);
+    };
+    Rebuilt result{build(hierarchy), {}};
+    RebuildReport& report = result.report;
+    report.levels = hierarchy.steps();
+    report.details = detailCount(hierarchy);
+    report.diagonal = diagonal(result.mesh.points);
+    if (options.shares) report.shares = errorsAfterEdit(hierarchy, moved, progress);
+    if (options.threshold || options.keep) {
+        if (options.threshold) threshold(hierarchy, *options.threshold);
+        if (options.keep) keepLongest(hierarchy, *options.keep);
+        PolygonMesh part = build(hierarchy);
+        report.error = pointError(part.points, result.mesh.points);
+        result.mesh = std::move(part);
     }
-    out += "\n";
-    if (report.shares.empty()) return out;
-    out += "\nlongest details      kept   error: rms              largest\n";
-    for (const auto& share : report.shares) {
-        out += fmt::format("{:>13.0f} % {:>9}   {:<22}  {}\n", 100 * share.share, share.kept,
-                           relative(share.error.rms, report.diagonal),
-                           relative(share.error.largest, report.diagonal));
-    }
-    return out;
+    report.kept = nonzeroDetailCount(hierarchy);
+    report.vertices = result.mesh.vertexCount();
+    report.faces = result.mesh.faceCount();
+    return result;
 }
 
-std::string json(const RebuildReport& report) {
-    nlohmann::ordered_json j = {{"version", 1},
-                                {"levels", report.levels},
-                                {"vertices", report.vertices},
-                                {"faces", report.faces},
-                                {"details", report.details},
-                                {"kept", report.kept},
-                                {"diagonal", report.diagonal},
-                                {"error", errorJson(report.error)}};
-    if (!report.shares.empty()) {
-        auto shares = nlohmann::ordered_json::array();
-        for (const auto& share : report.shares)
-            shares.push_back(
-                {{"share", share.share}, {"kept", share.kept}, {"error", errorJson(share.error)}});
-        j["shares"] = shares;
+std::optional<MovedVertex> firstMovedVertex(const PolygonMesh& base, const PolygonMesh& mesh) {
+    const double allowed = kSameBase * diagonal(base.points);
+    for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+        const double distance = length(mesh.points[v] - base.points[v]);
+        if (distance > allowed) return MovedVertex{v, distance};
     }
-    return j.dump(1) + "\n";
+    return std::nullopt;
 }
 
 }  // namespace isowave::subdivision

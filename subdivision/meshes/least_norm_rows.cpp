@@ -15,17 +15,17 @@ constexpr double kSolved = 1e-9;
 }  // namespace
 
 const std::vector<double>& LeastNormRows::weights(const std::vector<Index>& window) {
-    cut(window);
+    restrictTo(window);
     const auto [entry, isNew] = solutions_.try_emplace(key_);
     if (isNew) {
-        choose();
+        factorise();
         entry->second = shortest();
     }
     return entry->second;
 }
 
 // Writes P on the window into p_, its coarse vertices numbered as they come, and into key_.
-void LeastNormRows::cut(const std::vector<Index>& window) {
+void LeastNormRows::restrictTo(const std::vector<Index>& window) {
     key_.clear();
     p_.clear();
     touched_.clear();
@@ -45,7 +45,7 @@ void LeastNormRows::cut(const std::vector<Index>& window) {
 
 // Cholesky of P'P, the largest remaining diagonal first, until what remains is dependent: direction k holds the
 // products of all columns with the part of the k-th chosen one that is new.
-void LeastNormRows::choose() {
+void LeastNormRows::factorise() {
     const std::size_t m = touched_.size();
     std::vector<double> gram(m * m, 0.0), rest(m);
     for (const Taps& taps : p_) {

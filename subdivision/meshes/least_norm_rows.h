@@ -17,7 +17,7 @@ struct Tap {
 };
 using Taps = std::vector<Tap>;
 
-// Places that look the same to P are solved for once. Not for several threads at once.
+// Windows on which P is the same matrix are solved for once. Not for several threads at once.
 class LeastNormRows {
   public:
     // The row of P at a fine node, over coarse vertices.
@@ -27,11 +27,12 @@ class LeastNormRows {
     // The weights of the row at the coarse vertex whose number the row of P at window[0] names first; one for each
     // node of the window, empty when the window has no such row. They stay where they are for as long as this lives.
     const std::vector<double>& weights(const std::vector<Index>& window);
-    std::size_t different() const { return solutions_.size(); }
+    // Different matrices solved for so far.
+    std::size_t solutionCount() const { return solutions_.size(); }
 
   private:
-    void cut(const std::vector<Index>& window);
-    void choose();
+    void restrictTo(const std::vector<Index>& window);
+    void factorise();
     std::vector<double> solve(const std::vector<double>& r) const;
     std::vector<double> shortest() const;
 

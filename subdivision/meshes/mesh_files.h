@@ -1,5 +1,4 @@
-// Polygon meshes in files: OBJ, OFF, PLY, read and written with every digit of a double. (CGAL's readers say only
-// yes or no, and know no creases.)
+// Polygon meshes in files: OBJ, OFF, PLY, read and written with every digit of a double (io/mesh).
 //
 // Creases and pinned vertices have no place of their own in these formats. In all three they can be written as
 // OpenSubdiv's regression shapes do, in OBJ as a line, in OFF and PLY as a comment (`#`, `comment`) of the same text:
@@ -13,25 +12,24 @@
 #include <string>
 #include <string_view>
 
+#include "isowave/mesh.h"
 #include "subdivision/meshes/polygon_mesh.h"
 
 namespace isowave::subdivision {
 
-enum class PolygonFormat { obj, off, ply };
-
-// By extension, in any case. Throws InputError naming the three for another one.
-PolygonFormat polygonFormatOf(const std::filesystem::path& path);
+// By extension, in any case: obj, off or ply. Throws InputError naming the three for another one.
+MeshFormat polygonFormatOf(const std::filesystem::path& path);
 
 // Reads positions, faces and creases; texture coordinates, normals, colours, groups and materials are passed over.
 // PLY: ASCII or binary of either byte order. OBJ: negative indices count from the end. Nothing is merged, turned or
 // checked beyond the file itself: requireManifold() does that.
-// Throws InputError with the line (byte, element) and what was expected: no such file, truncated, not a number,
-// a vertex that is not there.
+// Throws InputError with the line or the element and what was expected: no such file, truncated, not a number, a vertex
+// that is not there. REQUIRES: format is one of the three.
 PolygonMesh readPolygonMesh(const std::filesystem::path& path);
-PolygonMesh parsePolygonMesh(std::string_view bytes, PolygonFormat format, const std::string& name);
+PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
-// The shortest decimals that read back to the same bits (OBJ, OFF), or float64 (PLY, binary little-endian).
-std::string polygonMeshBytes(const PolygonMesh& mesh, PolygonFormat format);
+// Decimals that read back to the same bits (OBJ, OFF), or float64 (PLY, binary little-endian).
+std::string polygonMeshBytes(const PolygonMesh& mesh, MeshFormat format);
 
 // Appears whole or not at all. Throws OperationError.
 void writePolygonMesh(const std::filesystem::path& path, const PolygonMesh& mesh);

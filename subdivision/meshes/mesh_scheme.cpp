@@ -5,18 +5,8 @@
 #include <cassert>
 
 #include "isowave/error.h"
-#include "subdivision/meshes/quad_connectivity.h"
-#include "subdivision/meshes/triangle_step.h"
 
 namespace isowave::subdivision {
-namespace {
-
-const std::vector<MeshScheme>& table() {
-    static const std::vector<MeshScheme> kSchemes{catmullClarkScheme(), loopScheme(), butterflyScheme()};
-    return kSchemes;
-}
-
-}  // namespace
 
 std::vector<Vec3> SubdivisionStep::compose(std::span<const Vec3> coarse,
                                            std::span<const Vec3> allDetails) const {
@@ -26,17 +16,6 @@ std::vector<Vec3> SubdivisionStep::compose(std::span<const Vec3> coarse,
     auto fine = subdivide(moved);
     for (std::size_t v = 0; v < fine.size(); ++v) fine[v] += allDetails[v];
     return fine;
-}
-
-std::span<const MeshScheme> meshSchemes() { return table(); }
-
-const MeshScheme& meshScheme(std::string_view name) {
-    std::string list;
-    for (const auto& scheme : table()) {
-        if (scheme.name == name) return scheme;
-        list += (list.empty() ? "" : ", ") + std::string(scheme.name);
-    }
-    throw InputError(fmt::format("'{}' is no subdivision of meshes; they are {}", name, list));
 }
 
 std::string_view meshVariant(const MeshScheme& scheme, std::string_view variant) {

@@ -1,5 +1,5 @@
-// What a subdivision of meshes has to offer to take part in hierarchies (hierarchy.h) and commands: one row of a
-// table and one class.
+// What a subdivision of meshes has to offer to take part in hierarchies (hierarchy.h) and commands: one row of the
+// table in mesh_schemes.cpp, and one class.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 namespace isowave::subdivision {
 
 // One subdivision step over a given coarse connectivity, forwards and backwards. Fine points have the *canonical
-// order* that refined() gives them:
+// order* that fineMesh() gives them:
 //   vertices   fine vertex i is the coarse vertex i, for all coarse vertices; then those of the edges, in the order
 //              of Adjacency; then, where the scheme makes them, those of the faces
 //   faces      fine face c lies at the corner c of the coarse mesh and starts at its vertex, for all coarse corners;
@@ -31,7 +31,7 @@ class SubdivisionStep {
     virtual ~SubdivisionStep() = default;
 
     // Faces, creases and pinned vertices of the fine mesh; its points are all 0.
-    virtual PolygonMesh refined() const = 0;
+    virtual PolygonMesh fineMesh() const = 0;
     std::size_t coarseSize() const { return coarseSize_; }
     std::size_t fineSize() const { return fineSize_; }
 
@@ -47,7 +47,7 @@ class SubdivisionStep {
     // D from what is stored. Where P is not injective it takes the coarse points to fill the gap.
     virtual std::vector<Vec3> allDetails(std::span<const Vec3> coarse,
                                          std::span<const Vec3> stored) const = 0;
-    // How far the details move the coarse points away from where a scheme without refinement has them.
+    // How far the details move the coarse points from where A0, the inverse without refinement, has them.
     virtual std::vector<Vec3> shift(std::span<const Vec3> allDetails) const = 0;
 
     // P (c - shift(D)) + D.
@@ -72,8 +72,6 @@ struct Coarsening {
     std::vector<Index> fineCorner;
 };
 
-inline constexpr int kAllLevels = -1;
-
 struct MeshScheme {
     std::string_view name;                   // "catmull-clark"
     std::string_view summary;                // one line for messages and documentation
@@ -87,10 +85,6 @@ struct MeshScheme {
     std::vector<Coarsening> (*recover)(const PolygonMesh& fine, int levels, const Progress& progress);
 };
 
-// The table.
-std::span<const MeshScheme> meshSchemes();
-// Throws InputError that lists the names.
-const MeshScheme& meshScheme(std::string_view name);
 // `variant` itself, or the scheme's first when it is empty. Throws InputError that lists them.
 std::string_view meshVariant(const MeshScheme& scheme, std::string_view variant);
 

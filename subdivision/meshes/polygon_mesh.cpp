@@ -355,7 +355,7 @@ std::vector<Crease> creasesByAngle(const PolygonMesh& mesh, const Adjacency& adj
 }
 
 std::vector<Index> correspondingCorners(const Adjacency& a, const Adjacency& b,
-                                        std::span<const CornerPair> seeds) {
+                                        std::span<const CornerPair> known) {
     if (a.corners() != b.corners() || a.faces() != b.faces() || a.vertices() != b.vertices()) return {};
     std::vector<Index> of(a.corners(), kNone);
     std::vector<Index> stack;
@@ -370,8 +370,8 @@ std::vector<Index> correspondingCorners(const Adjacency& a, const Adjacency& b,
         stack.push_back(ca);
         for (Index i = ca, j = cb; of[i] == kNone; i = a.next(i), j = b.next(j)) of[i] = j;
     };
-    for (const CornerPair& seed : seeds) {
-        pairFaces(seed.a, seed.b);
+    for (const CornerPair& pair : known) {
+        pairFaces(pair.a, pair.b);
         while (same && !stack.empty()) {
             const Index first = stack.back();
             stack.pop_back();

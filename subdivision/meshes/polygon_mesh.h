@@ -1,4 +1,4 @@
-// Polygon meshes by index: points, faces of any size, creases; what is wrong with one; who is next to whom.
+// Who is next to whom in a polygon mesh (the type, and what may be wrong with one: isowave/subdivision.h).
 //
 // Notation. A *corner* c is one place in one face; corners of all faces are numbered in the order of the faces,
 // so corner c of a mesh stands for three things at once:
@@ -8,77 +8,13 @@
 // An *edge* is one halfedge without a twin (boundary) or two that are each other's twin.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "isowave/subdivision.h"
+
 namespace isowave::subdivision {
-
-struct Vec3 {
-    double x = 0, y = 0, z = 0;
-
-    Vec3& operator+=(const Vec3& v) { return x += v.x, y += v.y, z += v.z, *this; }
-    Vec3& operator-=(const Vec3& v) { return x -= v.x, y -= v.y, z -= v.z, *this; }
-    Vec3& operator*=(double s) { return x *= s, y *= s, z *= s, *this; }
-    friend Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
-    friend Vec3 operator-(Vec3 a, const Vec3& b) { return a -= b; }
-    friend Vec3 operator*(double s, Vec3 a) { return a *= s; }
-    friend bool operator==(const Vec3&, const Vec3&) = default;
-};
-inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-
-using Index = std::uint32_t;
-inline constexpr Index kNone = ~Index{0};
-
-// An edge across which the surface has a kink, by its two vertices. Sharpness is any number above 0 and is only
-// passed on: a crease is a crease at every level.
-struct Crease {
-    Index a = 0, b = 0;
-    double sharpness = 1;
-    friend bool operator==(const Crease&, const Crease&) = default;
-};
-
-struct PolygonMesh {
-    std::vector<Vec3> points;
-    std::vector<Index> corners;          // vertex of each corner, face after face
-    std::vector<Index> faceBegin = {0};  // face f owns the corners [faceBegin[f], faceBegin[f+1])
-    std::vector<Crease> creases;
-    std::vector<Index> pinned;  // vertices that subdivision leaves where they are, besides those it must
-
-    std::size_t vertexCount() const { return points.size(); }
-    std::size_t faceCount() const { return faceBegin.size() - 1; }
-    std::size_t faceSize(std::size_t f) const { return faceBegin[f + 1] - faceBegin[f]; }
-    std::span<const Index> face(std::size_t f) const { return {corners.data() + faceBegin[f], faceSize(f)}; }
-    void addFace(std::span<const Index> vertices) {
-        corners.insert(corners.end(), vertices.begin(), vertices.end());
-        faceBegin.push_back(static_cast<Index>(corners.size()));
-    }
-    void addFace(std::initializer_list<Index> vertices) {
-        addFace(std::span<const Index>(vertices.begin(), vertices.size()));
-    }
-};
-
-// Everything that keeps a mesh from being an oriented 2-manifold (with or without boundary), one line a kind of
-// defect: how often, where first (vertices and faces counted from 0), what to do. In this order; of a kind that
-// makes others meaningless only that one:
-//   no faces; a vertex number beyond the points; a coordinate that is not finite; a face with fewer than three
-//   corners or with one vertex twice; an edge with more than two faces; two faces that run along an edge the same
-//   way (mixed orientation); a vertex whose faces form more than one fan; a vertex in no face; a crease or a
-//   pinned vertex that is not in the mesh.
-std::vector<std::string> defects(const PolygonMesh& mesh);
-
-// Throws InputError with the first of defects(), after `name`.
-void requireManifold(const PolygonMesh& mesh, const std::string& name);
-
-// Length of the diagonal of the box around the points: the scale that tolerances refer to.
-double diagonal(std::span<const Vec3> points);
 
 // Who is next to whom, in time and memory linear in the mesh. REQUIRES: defects(mesh).empty(); only the faces
 // and the number of points are looked at, so points may be anything. It keeps no reference to the mesh.
@@ -150,6 +86,6 @@ struct CornerPair {
     Index a, b;
 };
 std::vector<Index> correspondingCorners(const Adjacency& a, const Adjacency& b,
-                                        std::span<const CornerPair> seeds);
+                                        std::span<const CornerPair> known);
 
 }  // namespace isowave::subdivision

@@ -31,11 +31,11 @@ const char* nameOf(Role role) {
     return "nothing";
 }
 
-// One way to see a component.
-struct Way {
+// One way to see a component: what each of its vertices is the point of.
+struct Labelling {
     std::vector<Role> role;           // of each vertex
     std::vector<Index> vertexCorner;  // of each face: the corner of its V
-    std::size_t contradictions = 0;   // faces and vertices at which it cannot be
+    std::size_t contradictions = 0;   // faces and vertices at which it fails
     std::string reason;               // the first of them
     Coarsening coarsening;            // when there is none
 };
@@ -73,18 +73,18 @@ std::vector<Part> partsOf(const PolygonMesh& mesh, const Adjacency& adjacency) {
     return parts;
 }
 
-// ---- a way: spread -> check -> build ----
+// ---- a labelling: spread -> check -> build ----
 
-class Ways {
+class Labeller {
   public:
-    Ways(const PolygonMesh& mesh, std::span<const Index> names)
+    Labeller(const PolygonMesh& mesh, std::span<const Index> names)
         : mesh_(mesh), adjacency_(mesh), names_(names) {
         sharpness_ = edgeSharpness(adjacency_, mesh.creases);
     }
 
-    // The four ways, good and bad; the corner of the first face with the lowest vertex is V in the first. Empty, with a
+    // The four labellings, good and bad; the corner of the first face with the lowest vertex is V in the first. Empty, with a
     // reason, when a face is no quad.
-    std::vector<Way> all(std::string& reason) const {
+    std::vector<Labelling> all(std::string& reason) const {
         for (Index f = 0; f < adjacency_.faces(); ++f) {
             if (adjacency_.faceSize(f) == 4) continue;
             reason = fmt::format(
@@ -93,98 +93,100 @@ class Ways {
                 adjacency_.faceSize(f));
             return {};
         }
-        std::array<Index, 4> seeds{0, 1, 2, 3};
-        std::sort(seeds.begin(), seeds.end(),
+        std::array<Index, 4> starts{0, 1, 2, 3};
+        std::sort(starts.begin(), starts.end(),
                   [&](Index a, Index b) { return mesh_.corners[a] < mesh_.corners[b]; });
-        std::vector<Way> ways;
-        for (const Index seed : seeds) ways.push_back(way(seed));
-        return ways;
+        std::vector<Labelling> labellings;
+        for (const Index start : starts) labellings.push_back(labelling(start));
+        return labellings;
     }
     const Adjacency& adjacency() const { return adjacency_; }
 
   private:
     Index name(Index v) const { return names_.empty() ? v : names_[v]; }
 
-    Way way(Index seed) const {
-        Way way;
-        spread(seed, way);
-        if (way.contradictions == 0) check(way);
-        if (way.contradictions == 0) build(way);
-        return way;
+    Labelling labelling(Index start) const {
+        Labelling labelling;
+        spread(start, labelling);
+        if (labelling.contradictions == 0) check(labelling);
+        if (labelling.contradictions == 0) build(labelling);
+        return labelling;
     }
 
-    void contradict(Way& way, std::string reason) const {
-        if (way.contradictions++ == 0) way.reason = std::move(reason);
+    void contradict(Labelling& labelling, std::string reason) const {
+        if (labelling.contradictions++ == 0) labelling.reason = std::move(reason);
     }
 
     // The corner of V in the face across halfedge c, from the roles that c's ends have in its own face.
-    Index vertexCornerAcross(const Way& way, Index c) const {
-        const Index t = adjacency_.twin(c), v = way.vertexCorner[adjacency_.face(c)];
+    Index vertexCornerAcross(const Labelling& labelling, Index c) const {
+        const Index t = adjacency_.twin(c), v = labelling.vertexCorner[adjacency_.face(c)];
         if (c == v) return adjacency_.next(t);                                    // V -> E: across, E -> V
         if (c == adjacency_.prev(v)) return t;                                    // E -> V: across, V -> E
         if (c == adjacency_.next(v)) return adjacency_.next(adjacency_.next(t));  // E -> F: across, F -> E
         return adjacency_.prev(t);                                                // F -> E: across, E -> F
     }
 
-    void setRoles(Way& way, Index v) const {
+    void setRoles(Labelling& labelling, Index v) const {
         Index c = v;
         for (const Role role : {Role::vertex, Role::edge, Role::face, Role::edge}) {
-            Role& known = way.role[adjacency_.vertex(c)];
+            Role& known = labelling.role[adjacency_.vertex(c)];
             if (known == Role::unknown) known = role;
             if (known != role) {
-                contradict(way, fmt::format("vertex {} would be the point of {} and of {}",
-                                            name(adjacency_.vertex(c)), nameOf(known), nameOf(role)));
+                contradict(labelling, fmt::format("vertex {} would be the point of {} and of {}",
+                                                  name(adjacency_.vertex(c)), nameOf(known), nameOf(role)));
             }
             c = adjacency_.next(c);
         }
     }
 
-    void spread(Index seed, Way& way) const {
-        way.role.assign(adjacency_.vertices(), Role::unknown);
-        way.vertexCorner.assign(adjacency_.faces(), kNone);
-        std::vector<Index> queue{adjacency_.face(seed)};
-        way.vertexCorner[queue[0]] = seed;
+    void spread(Index start, Labelling& labelling) const {
+        labelling.role.assign(adjacency_.vertices(), Role::unknown);
+        labelling.vertexCorner.assign(adjacency_.faces(), kNone);
+        std::vector<Index> queue{adjacency_.face(start)};
+        labelling.vertexCorner[queue[0]] = start;
         for (std::size_t i = 0; i < queue.size(); ++i) {
-            setRoles(way, way.vertexCorner[queue[i]]);
+            setRoles(labelling, labelling.vertexCorner[queue[i]]);
             const Index begin = adjacency_.faceBegin(queue[i]);
             for (Index c = begin; c < begin + 4; ++c) {
                 if (adjacency_.twin(c) == kNone) continue;
                 const Index next = adjacency_.face(adjacency_.twin(c));
-                if (way.vertexCorner[next] != kNone) continue;
-                way.vertexCorner[next] = vertexCornerAcross(way, c);
+                if (labelling.vertexCorner[next] != kNone) continue;
+                labelling.vertexCorner[next] = vertexCornerAcross(labelling, c);
                 queue.push_back(next);
             }
         }
     }
 
-    void check(Way& way) const {
+    void check(Labelling& labelling) const {
         for (Index v = 0; v < adjacency_.vertices(); ++v) {
             const bool boundary = adjacency_.isBoundaryVertex(v);
             const auto faces = adjacency_.faceValence(v);
-            if (way.role[v] == Role::edge && faces != (boundary ? 2u : 4u)) {
+            if (labelling.role[v] == Role::edge && faces != (boundary ? 2u : 4u)) {
                 contradict(
-                    way, fmt::format("vertex {} has {} faces, but as the point of an edge{} it must have {}",
-                                     name(v), faces, boundary ? " of the boundary" : "", boundary ? 2 : 4));
+                    labelling,
+                    fmt::format("vertex {} has {} faces, but as the point of an edge{} it must have {}",
+                                name(v), faces, boundary ? " of the boundary" : "", boundary ? 2 : 4));
             }
-            if (way.role[v] == Role::face && boundary)
+            if (labelling.role[v] == Role::face && boundary)
                 contradict(
-                    way,
+                    labelling,
                     fmt::format("vertex {} lies on the boundary, but would be the point of a face", name(v)));
         }
         for (Index c = 0; c < adjacency_.corners(); ++c) {
-            const bool isFaceSide =
-                way.role[adjacency_.vertex(c)] == Role::face || way.role[adjacency_.target(c)] == Role::face;
+            const bool isFaceSide = labelling.role[adjacency_.vertex(c)] == Role::face ||
+                                    labelling.role[adjacency_.target(c)] == Role::face;
             if (sharpness_[adjacency_.edge(c)] > 0 && isFaceSide) {
-                contradict(way, fmt::format("the crease between vertices {} and {} would run across a face",
-                                            name(adjacency_.vertex(c)), name(adjacency_.target(c))));
+                contradict(labelling,
+                           fmt::format("the crease between vertices {} and {} would run across a face",
+                                       name(adjacency_.vertex(c)), name(adjacency_.target(c))));
             }
             // V -> E: the other half of the coarse edge is next around E, two halfedges on.
-            if (c == way.vertexCorner[adjacency_.face(c)]) checkCreaseHalves(way, c);
+            if (c == labelling.vertexCorner[adjacency_.face(c)]) checkCreaseHalves(labelling, c);
         }
         for (const Index v : mesh_.pinned)
-            if (way.role[v] != Role::vertex)
-                contradict(way, fmt::format("the marked corner {} would be the point of {}", name(v),
-                                            nameOf(way.role[v])));
+            if (labelling.role[v] != Role::vertex)
+                contradict(labelling, fmt::format("the marked corner {} would be the point of {}", name(v),
+                                                  nameOf(labelling.role[v])));
     }
 
     // The edge behind E of the coarse edge that starts with the halfedge V -> E: it leaves E, in the face across the edge
@@ -194,38 +196,38 @@ class Ways {
         return adjacency_.edge(adjacency_.next(across));           // E -> V
     }
 
-    void checkCreaseHalves(Way& way, Index c) const {
+    void checkCreaseHalves(Labelling& labelling, Index c) const {
         const bool here = sharpness_[adjacency_.edge(c)] > 0;
         if (adjacency_.twin(adjacency_.next(c)) == kNone || here == (sharpness_[otherHalf(c)] > 0)) return;
-        contradict(way, fmt::format("a crease ends at vertex {}, in the middle of an edge",
-                                    name(adjacency_.target(c))));
+        contradict(labelling, fmt::format("a crease ends at vertex {}, in the middle of an edge",
+                                          name(adjacency_.target(c))));
     }
 
-    void build(Way& way) const {
-        PolygonMesh& coarse = way.coarsening.coarse;
+    void build(Labelling& labelling) const {
+        PolygonMesh& coarse = labelling.coarsening.coarse;
         std::vector<Index> coarseVertex(adjacency_.vertices(), kNone);
         for (Index v = 0; v < adjacency_.vertices(); ++v) {
-            if (way.role[v] != Role::vertex) continue;
+            if (labelling.role[v] != Role::vertex) continue;
             coarseVertex[v] = static_cast<Index>(coarse.points.size());
             coarse.points.push_back(mesh_.points[v]);
         }
         for (Index v = 0; v < adjacency_.vertices(); ++v) {
-            if (way.role[v] != Role::face) continue;
+            if (labelling.role[v] != Role::face) continue;
             const Index first = firstFaceAround(v);
             Index c = first;
             do {
-                const Index corner = way.vertexCorner[adjacency_.face(c)];
+                const Index corner = labelling.vertexCorner[adjacency_.face(c)];
                 coarse.corners.push_back(coarseVertex[adjacency_.vertex(corner)]);
-                way.coarsening.fineCorner.push_back(corner);
+                labelling.coarsening.fineCorner.push_back(corner);
                 c = adjacency_.nextAround(c);
             } while (c != first);
             coarse.faceBegin.push_back(static_cast<Index>(coarse.corners.size()));
         }
         if (const auto lines = defects(coarse); !lines.empty()) {
-            contradict(way, "the coarse mesh would not be one: " + lines.front());
+            contradict(labelling, "the coarse mesh would not be one: " + lines.front());
             return;
         }
-        markCreases(way, coarseVertex);
+        markCreases(labelling, coarseVertex);
     }
 
     // The outgoing halfedge of F in the face with the lowest number.
@@ -238,13 +240,13 @@ class Ways {
     }
 
     // In the order of the fine creases, from the end that the fine crease names first.
-    void markCreases(Way& way, const std::vector<Index>& coarseVertex) const {
-        PolygonMesh& coarse = way.coarsening.coarse;
+    void markCreases(Labelling& labelling, const std::vector<Index>& coarseVertex) const {
+        PolygonMesh& coarse = labelling.coarsening.coarse;
         if (!mesh_.creases.empty()) {
             std::vector<Index> farEnd(adjacency_.vertices(),
                                       kNone);  // of E: the V where the crease came from
             for (const Crease& crease : mesh_.creases) {
-                const bool fromVertex = way.role[crease.a] == Role::vertex;
+                const bool fromVertex = labelling.role[crease.a] == Role::vertex;
                 const Index middle = fromVertex ? crease.b : crease.a, end = fromVertex ? crease.a : crease.b;
                 if (farEnd[middle] == kNone)
                     farEnd[middle] = end;
@@ -262,17 +264,17 @@ class Ways {
     std::vector<double> sharpness_;
 };
 
-// ---- choosing among the ways ----
+// ---- choosing among the labellings ----
 
 // How often a connected mesh can be made coarser, `limit` at most.
 int depthOf(const PolygonMesh& mesh, int limit) {
     if (limit <= 0) return 0;
-    const Ways ways(mesh, {});
+    const Labeller labeller(mesh, {});
     std::string reason;
     int depth = 0;
-    for (const Way& way : ways.all(reason)) {
-        if (way.contradictions > 0) continue;
-        depth = std::max(depth, 1 + depthOf(way.coarsening.coarse, limit - 1));
+    for (const Labelling& labelling : labeller.all(reason)) {
+        if (labelling.contradictions > 0) continue;
+        depth = std::max(depth, 1 + depthOf(labelling.coarsening.coarse, limit - 1));
         if (depth == limit) break;
     }
     return depth;
@@ -280,49 +282,50 @@ int depthOf(const PolygonMesh& mesh, int limit) {
 
 // Takes the coarse points to where the refined inverse has them, and returns the sum of the squares of the details.
 // (The points of the fine mesh's own vertices would not do: a level later they have details of their own.)
-double fit(Way& way, const PolygonMesh& mesh, const Adjacency& adjacency) {
-    const CatmullClarkStep step(way.coarsening.coarse, CatmullClarkVariant::refined);
-    const PolygonMesh canonical = step.refined();
+double fit(Labelling& labelling, const PolygonMesh& mesh, const Adjacency& adjacency) {
+    const CatmullClarkStep step(labelling.coarsening.coarse, CatmullClarkVariant::refined);
+    const PolygonMesh canonical = step.fineMesh();
     std::vector<Vec3> points(step.fineSize());
-    for (Index c = 0; c < way.coarsening.fineCorner.size(); ++c) {
-        Index at = way.coarsening.fineCorner[c];
+    for (Index c = 0; c < labelling.coarsening.fineCorner.size(); ++c) {
+        Index at = labelling.coarsening.fineCorner[c];
         for (int k = 0; k < 4; ++k, at = adjacency.next(at))
             points[canonical.corners[4 * c + k]] = mesh.points[adjacency.vertex(at)];
     }
     auto parts = step.decompose(points);
-    way.coarsening.coarse.points = std::move(parts.coarse);
+    labelling.coarsening.coarse.points = std::move(parts.coarse);
     double sum = 0;
     for (const Vec3& d : parts.stored) sum += dot(d, d);
     return sum;
 }
 
-// The best good way; nothing, and the reason of the one with the fewest contradictions, when there is none.
-std::optional<Way> bestWay(const PolygonMesh& mesh, std::span<const Index> names, int limit,
-                           std::string& reason) {
-    const Ways ways(mesh, names);
-    auto all = ways.all(reason);
+// The best good labelling; nothing, and the reason of the one with the fewest contradictions, when there is none.
+std::optional<Labelling> bestLabelling(const PolygonMesh& mesh, std::span<const Index> names, int limit,
+                                       std::string& reason) {
+    const Labeller labeller(mesh, names);
+    auto all = labeller.all(reason);
     if (all.empty()) return std::nullopt;
-    std::vector<Way> good;
-    for (Way& way : all)
-        if (way.contradictions == 0) good.push_back(std::move(way));
+    std::vector<Labelling> good;
+    for (Labelling& labelling : all)
+        if (labelling.contradictions == 0) good.push_back(std::move(labelling));
     if (good.empty()) {
-        const auto nearest = std::min_element(all.begin(), all.end(), [](const Way& a, const Way& b) {
-            return a.contradictions < b.contradictions;
-        });
+        const auto nearest = std::min_element(
+            all.begin(), all.end(),
+            [](const Labelling& a, const Labelling& b) { return a.contradictions < b.contradictions; });
         reason = nearest->reason;
         return std::nullopt;
     }
     if (good.size() > 1) {
         std::vector<int> depth;
-        for (const Way& way : good) depth.push_back(depthOf(way.coarsening.coarse, limit - 1));
+        for (const Labelling& labelling : good)
+            depth.push_back(depthOf(labelling.coarsening.coarse, limit - 1));
         const int deepest = *std::max_element(depth.begin(), depth.end());
-        std::vector<Way> kept;
+        std::vector<Labelling> kept;
         for (std::size_t k = 0; k < good.size(); ++k)
             if (depth[k] == deepest) kept.push_back(std::move(good[k]));
         good = std::move(kept);
     }
     std::vector<double> details;
-    for (Way& way : good) details.push_back(fit(way, mesh, ways.adjacency()));
+    for (Labelling& labelling : good) details.push_back(fit(labelling, mesh, labeller.adjacency()));
     const double scale = diagonal(mesh.points);
     const double rounding = 1e-24 * scale * scale * static_cast<double>(mesh.vertexCount());
     const double limitOfSame =
@@ -332,9 +335,10 @@ std::optional<Way> bestWay(const PolygonMesh& mesh, std::span<const Index> names
     return std::nullopt;  // not finite points: excluded by defects()
 }
 
-// ---- the whole mesh: the best way of every component, put together ----
+// ---- the whole mesh: the best labelling of every component, put together ----
 
-Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts, const std::vector<Way>& ways) {
+Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts,
+                    const std::vector<Labelling>& labellings) {
     // Vertices by their fine vertex, faces by that of their F: (fine number, part, number in the part).
     struct Item {
         Index fine, part, local;
@@ -344,8 +348,8 @@ Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts, con
     for (Index p = 0; p < parts.size(); ++p) {
         Index localFace = 0;
         for (Index v = 0; v < parts[p].vertex.size(); ++v) {
-            if (ways[p].role[v] == Role::vertex) coarseOf[parts[p].vertex[v]] = 0;
-            if (ways[p].role[v] == Role::face) faces.push_back({parts[p].vertex[v], p, localFace++});
+            if (labellings[p].role[v] == Role::vertex) coarseOf[parts[p].vertex[v]] = 0;
+            if (labellings[p].role[v] == Role::face) faces.push_back({parts[p].vertex[v], p, localFace++});
         }
     }
     std::sort(faces.begin(), faces.end(), [](const Item& a, const Item& b) { return a.fine < b.fine; });
@@ -356,7 +360,7 @@ Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts, con
         result.coarse.points.emplace_back();
     }
     for (const Item& item : faces) {
-        const Coarsening& own = ways[item.part].coarsening;
+        const Coarsening& own = labellings[item.part].coarsening;
         for (Index c = own.coarse.faceBegin[item.local]; c < own.coarse.faceBegin[item.local + 1]; ++c) {
             const Index corner = parts[item.part].corner[own.fineCorner[c]];
             result.fineCorner.push_back(corner);
@@ -365,10 +369,10 @@ Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts, con
         result.coarse.faceBegin.push_back(static_cast<Index>(result.coarse.corners.size()));
     }
     for (Index p = 0; p < parts.size(); ++p) {
-        const PolygonMesh& own = ways[p].coarsening.coarse;
+        const PolygonMesh& own = labellings[p].coarsening.coarse;
         std::vector<Index> global;  // of the part's coarse vertices
         for (Index v = 0; v < parts[p].vertex.size(); ++v)
-            if (ways[p].role[v] == Role::vertex) global.push_back(coarseOf[parts[p].vertex[v]]);
+            if (labellings[p].role[v] == Role::vertex) global.push_back(coarseOf[parts[p].vertex[v]]);
         for (std::size_t v = 0; v < global.size(); ++v) result.coarse.points[global[v]] = own.points[v];
         for (const Crease& c : own.creases)
             result.coarse.creases.push_back({global[c.a], global[c.b], c.sharpness});
@@ -381,16 +385,16 @@ Coarsening assemble(const PolygonMesh& mesh, const std::vector<Part>& parts, con
 std::optional<Coarsening> coarsen(const PolygonMesh& mesh, std::span<const Index> names, int limit,
                                   const Progress& progress, std::string& reason) {
     const auto parts = partsOf(mesh, Adjacency(mesh));
-    std::vector<Way> ways;
+    std::vector<Labelling> labellings;
     for (const Part& part : parts) {
         progress.check();
         std::vector<Index> partNames;
         for (const Index v : part.vertex) partNames.push_back(names[v]);
-        auto way = bestWay(part.mesh, partNames, limit, reason);
-        if (!way) return std::nullopt;
-        ways.push_back(std::move(*way));
+        auto labelling = bestLabelling(part.mesh, partNames, limit, reason);
+        if (!labelling) return std::nullopt;
+        labellings.push_back(std::move(*labelling));
     }
-    return assemble(mesh, parts, ways);
+    return assemble(mesh, parts, labellings);
 }
 
 // The coarse vertices are fine ones: they keep their names.
@@ -427,14 +431,6 @@ std::vector<Coarsening> recoverQuads(const PolygonMesh& fine, int levels, const 
         result.push_back(std::move(*next));
     }
     return result;
-}
-
-MeshScheme catmullClarkScheme() {
-    return {"catmull-clark",
-            "polygons of any size, boundaries and creases; the fine mesh is one of quads",
-            {"refined", "trial", "unscaled", "tensor", "wide"},
-            catmullClarkStep,
-            recoverQuads};
 }
 
 }  // namespace isowave::subdivision

@@ -64,8 +64,8 @@ class Search {
         // The answer that came farthest says most about what is wrong.
         std::size_t farthest = 0;
         std::string reason;
-        for (const auto& [seed, as] : answers(v)) {
-            const std::string failure = spread(seed, as);
+        for (const auto& [start, as] : answers(v)) {
+            const std::string failure = spread(start, as);
             if (failure.empty()) return;
             if (reached_.size() > farthest) {
                 farthest = reached_.size();
@@ -93,11 +93,11 @@ class Search {
     // The triangle of v and its lowest neighbour (the left one, as seen from v, where there are two), and the
     // parts that it may play, in the order in which they are tried.
     std::array<std::pair<Index, Part>, 4> answers(Index v) const {
-        Index lowest = kNone, seed = kNone;
+        Index lowest = kNone, start = kNone;
         const auto consider = [&](Index neighbour, Index h) {
             if (neighbour >= lowest) return;
             lowest = neighbour;
-            seed = triangleOf(h);
+            start = triangleOf(h);
         };
         fine_.around(v, [&](Index h) {
             consider(fine_.target(h), h);
@@ -105,18 +105,20 @@ class Search {
         });
         Part first = 0, second = 0;
         for (Part k = 0; k < 3; ++k) {
-            if (vertex(seed, k) == v) first = k;
-            if (vertex(seed, k) == lowest) second = k;
+            if (vertex(start, k) == v) first = k;
+            if (vertex(start, k) == lowest) second = k;
         }
-        return {
-            {{seed, first}, {seed, second}, {seed, static_cast<Part>(3 - first - second)}, {seed, kMiddle}}};
+        return {{{start, first},
+                 {start, second},
+                 {start, static_cast<Part>(3 - first - second)},
+                 {start, kMiddle}}};
     }
 
-    // Gives the piece its parts, starting with `as` for the seed. Returns why that fails, or nothing; reached_ is
-    // what has a part by then.
-    std::string spread(Index seed, Part as) {
+    // Gives the piece its parts, beginning with `as` for the triangle `start`. Returns why that fails, or nothing;
+    // reached_ is what has a part by then.
+    std::string spread(Index start, Part as) {
         reached_.clear();
-        if (std::string failure = assign(seed, as); !failure.empty()) return failure;
+        if (std::string failure = assign(start, as); !failure.empty()) return failure;
         for (std::size_t k = 0; k < reached_.size(); ++k) {
             for (Part corner = 0; corner < 3; ++corner) {
                 if (std::string failure = cross(halfedge(reached_[k], corner)); !failure.empty())
@@ -288,7 +290,7 @@ std::vector<Coarsening> recoverTriangles(const PolygonMesh& fine, int levels, co
     return found;
 }
 
-PolygonMesh refinedTriangles(const Adjacency& coarse) {
+PolygonMesh fineTriangles(const Adjacency& coarse) {
     const auto onEdge = [&](Index h) { return static_cast<Index>(coarse.vertices()) + coarse.edge(h); };
     PolygonMesh fine;
     fine.points.resize(coarse.vertices() + coarse.edges());

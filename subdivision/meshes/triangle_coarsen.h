@@ -9,8 +9,8 @@
 //       / \ / \            One triangle's part settles its neighbours' (passes below), so a connected piece has
 //      b---y---c           four possible answers: the first triangle's three corners, or its middle.
 //
-// Passes: seed -> spread -> count -> assemble.
-//   seed      the piece's vertex of lowest number, its neighbour of lowest number, and their triangle
+// Passes: start -> spread -> count -> assemble.
+//   start     the piece's vertex of lowest number, its neighbour of lowest number, and their triangle
 //   spread    across every edge; stops where two parts meet that disagree, or where a middle would lie on the
 //             boundary or would not have 6 triangles (3 on the boundary)
 //   count     no two coarse triangles may share a directed edge, nor may one have a vertex twice
@@ -18,7 +18,8 @@
 // The first of these answers that holds is taken: the vertex of lowest number remains; else its neighbour of lowest
 // number does; else the third corner; else none of the three. (More than one holds only where no vertex inside has
 // a valence other than 6: on tori, annuli and some open pieces. Programs write coarse vertices first, so the first
-// answer gives back what they subdivided. It depends on the numbering of vertices, not on the order of triangles.)
+// answer gives back what they subdivided. Which answer is taken depends on the numbering of vertices, not on the order of
+// triangles.)
 //
 // Linear in the number of triangles. Taubin, "Detecting and reconstructing subdivision connectivity" (The Visual
 // Computer 18, 2002), looks at all four answers at once, as sheets of a covering; the result is the same.
@@ -47,6 +48,6 @@ std::vector<Coarsening> recoverTriangles(const PolygonMesh& fine, int levels, co
 // 1 to 4, in the order of mesh_scheme.h: the vertex on edge e gets number coarse.vertices() + e; the face of corner c
 // starts at its vertex; then the middles, each starting at its triangle's first edge. Points are all 0.
 // REQUIRES: triangles only.
-PolygonMesh refinedTriangles(const Adjacency& coarse);
+PolygonMesh fineTriangles(const Adjacency& coarse);
 
 }  // namespace isowave::subdivision

@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "subdivision/filters/construct.h"
-#include "subdivision/curves/curve_schemes.h"
+#include "subdivision/filters/four_point.h"
+#include "subdivision/filters/masks.h"
 #include "subdivision/meshes/triangle_coarsen.h"
 
 namespace isowave::subdivision {
@@ -118,8 +119,7 @@ TriangleStep::TriangleStep(Family family, Fit fit, Adjacency coarse, const std::
     }
 }
 
-// --- P
-// ------------------------------------------------------------------------------------------------------
+// ---- P ----
 
 void TriangleStep::rowOfP(Index fine, Taps& row) const {
     row.clear();
@@ -206,8 +206,7 @@ void TriangleStep::boundaryEdge(Index h, Taps& row) const {
         row.push_back({curve[static_cast<std::size_t>(node.x)], toDouble(weight)});
 }
 
-// --- A
-// ------------------------------------------------------------------------------------------------------
+// ---- A ----
 
 void TriangleStep::rowOfA0(Index v, Taps& row) const {
     row.clear();
@@ -289,7 +288,7 @@ const TriangleStep::Irregular& TriangleStep::irregular() const {
             Taps& row = result->rows.emplace_back();
             for (std::size_t k = 0; k < window.size(); ++k) row.push_back({window[k], weights[k]});
         }
-        result->different = solver.different();
+        result->different = solver.solutionCount();
         irregular_ = std::move(result);
     });
     return *irregular_;
@@ -353,11 +352,10 @@ Index TriangleStep::boundaryBefore(Index v) const {
     return coarse_.prev(last);
 }
 
-// --- points
-// -------------------------------------------------------------------------------------------------
+// ---- points ----
 
-PolygonMesh TriangleStep::refined() const {
-    PolygonMesh fine = refinedTriangles(coarse_);
+PolygonMesh TriangleStep::fineMesh() const {
+    PolygonMesh fine = fineTriangles(coarse_);
     fine.pinned = pinned_;
     return fine;
 }
@@ -420,39 +418,6 @@ std::vector<Vec3> TriangleStep::shift(std::span<const Vec3> allDetails) const {
         moved[v] = sum(row, allDetails);
     }
     return moved;
-}
-
-// --- rows of the table
-// ------------------------------------------------------------------------------------------
-
-namespace {
-
-template <TriangleStep::Family family>
-std::unique_ptr<SubdivisionStep> makeStep(const PolygonMesh& coarse, std::string_view variant) {
-    using Fit = TriangleStep::Fit;
-    return std::make_unique<TriangleStep>(family,
-                                          variant == "trial"  ? Fit::Trial
-                                          : variant == "wide" ? Fit::Wide
-                                                              : Fit::Refined,
-                                          coarse);
-}
-
-}  // namespace
-
-MeshScheme loopScheme() {
-    return {"loop",
-            "Loop's, of triangles: box splines where six meet",
-            {"refined", "trial", "wide"},
-            makeStep<TriangleStep::Family::Loop>,
-            recoverTriangles};
-}
-
-MeshScheme butterflyScheme() {
-    return {"butterfly",
-            "modified Butterfly, of triangles: goes through the points",
-            {"refined", "trial", "wide"},
-            makeStep<TriangleStep::Family::Butterfly>,
-            recoverTriangles};
 }
 
 }  // namespace isowave::subdivision

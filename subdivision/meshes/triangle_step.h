@@ -62,7 +62,7 @@ class TriangleStep final : public SubdivisionStep {
     void rowOfA0(Index vertex, Taps& row) const;  // over fine vertices, v's own first
     void rowOfA(Index vertex, Taps& row) const;   // over fine vertices
 
-    PolygonMesh refined() const override;
+    PolygonMesh fineMesh() const override;
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override;
     Parts decompose(std::span<const Vec3> fine) const override;
     std::vector<Vec3> allDetails(std::span<const Vec3> coarse, std::span<const Vec3> stored) const override;
@@ -76,7 +76,7 @@ class TriangleStep final : public SubdivisionStep {
 
   private:
     enum class Place : char { Inside, Boundary, Corner };
-    // What is needed of A where it is not the exact row: made when first asked for.
+    // The rows of A where they are not the exact one: computed when first asked for.
     struct Irregular;
 
     TriangleStep(Family family, Fit fit, Adjacency coarse, const std::vector<Index>& pinned);
@@ -114,9 +114,5 @@ class TriangleStep final : public SubdivisionStep {
 
 // b above, for n >= 3 neighbours.
 double loopBeta(int n);
-
-// The two rows of the table of mesh_scheme.h.
-MeshScheme loopScheme();
-MeshScheme butterflyScheme();
 
 }  // namespace isowave::subdivision

@@ -174,7 +174,7 @@ TEST(Contour, SmoothCurvesGoThroughTheCrossingsAndStayWithinTolerance) {
             EXPECT_EQ(ring.front().start, curves.world(r)[0]);
             for (std::size_t i = 0; i < ring.size(); ++i) {
                 EXPECT_EQ(ring[i].end, ring[(i + 1) % ring.size()].start);
-                for (int k = 0; k <= 20; ++k) {  // denser than the library looks
+                for (int k = 0; k <= 20; ++k) {  // denser than the library samples
                     const Sample s = sample(field, curves.frame.toLattice(ring[i].at(k / 20.0)));
                     worst = std::max(worst, std::abs(s.value) / length(s.gradient) * curves.frame.spacing.x);
                 }

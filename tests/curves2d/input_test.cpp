@@ -1,7 +1,8 @@
-// Rasterising, reading images and polygons, writing curves: the promises of raster.h, bitmap.h,
+// Rasterising, reading images and polygons, writing curves: the promises of raster.h, bitmap_shape.h,
 // polygon_input.h, draw.h and ladder.h.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -9,14 +10,14 @@
 #include <numeric>
 #include <sstream>
 
-#include "isowave/error.h"
-#include "curves2d/bitmap.h"
+#include "curves2d/bitmap_shape.h"
 #include "curves2d/draw.h"
 #include "curves2d/ladder.h"
 #include "curves2d/polygon_input.h"
 #include "curves2d/raster.h"
 #include "curves2d/shapes.h"
 #include "curves2d/validity.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {
@@ -55,7 +56,7 @@ std::string errorOf(const F& f) {
     return "nothing was thrown";
 }
 
-// ---- raster -----------------------------------------------------------------------------------------------
+// ---- raster ----
 
 // Even-odd by the definition: crossings to the left of the point.
 bool insideByDefinition(const Polygon& polygon, double x, double y) {
@@ -127,7 +128,7 @@ TEST(Raster, RefusesPointsTooFarAway) {
                 HasSubstr("2^28 pixels"));
 }
 
-// ---- images -----------------------------------------------------------------------------------------------
+// ---- images ----
 
 using Images = Files;
 
@@ -234,7 +235,7 @@ TEST_F(Images, AShapeAtTheBorderIsClosedHalfAPixelOutside) {
     }
 }
 
-// ---- polygons ---------------------------------------------------------------------------------------------
+// ---- polygons ----
 
 using Polygons = Files;
 
@@ -348,7 +349,7 @@ TEST(SelfIntersection, AgreesWithCgalOnRandomRings) {
     EXPECT_GT(simple, 500);
 }
 
-// ---- out, and in again ------------------------------------------------------------------------------------
+// ---- out, and in again ----
 
 using Drawing = Files;
 
@@ -379,12 +380,12 @@ TEST_F(Drawing, GeojsonAndTextComeBackAsTheSameRings) {
 
 TEST_F(Drawing, WrittenRingsAreStillSimpleInTheInputsCoordinates) {
     const Input input = readInput(kData / "africa.geojson", {.pixels = 363});
-    climb(fit(input.shape, Fit::distance), 8,
-          [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
-              if (curves.rings.empty()) return;
-              writeGeojson(folder_ / "a.geojson", curves, "Africa");
-              EXPECT_THAT(readPolygons(folder_ / "a.geojson").remarks, IsEmpty()) << facts.step;
-          });
+    traceSteps(fit(*input.shape, Fit::distance), 8,
+               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+                   if (curves.rings.empty()) return;
+                   writeGeojson(folder_ / "a.geojson", curves, "Africa");
+                   EXPECT_THAT(readPolygons(folder_ / "a.geojson").remarks, IsEmpty()) << facts.step;
+               });
 }
 
 TEST_F(Drawing, PngShowsTheAreaAndNorthUp) {
@@ -435,18 +436,19 @@ TEST_F(Drawing, AnUnwritableFolderIsAnOperationError) {
                  OperationError);
 }
 
-// ---- real inputs ------------------------------------------------------------------------------------------
+// ---- real inputs ----
 
 TEST(RealInputs, AfricaKeepsItsAreaAndItsRingsAreValidAtEveryStep) {
     for (const Fit method : {Fit::binary, Fit::distance}) {
         const Input input = readInput(kData / "africa.geojson", {.pixels = 363});
         EXPECT_THAT(input.remarks, IsEmpty());
         std::vector<StepFacts> facts;
-        const Ladder ladder = climb(fit(input.shape, method), std::nullopt,
-                                    [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
-                                        EXPECT_EQ(validity::complaint(curves.rings), "") << f.step;
-                                        facts.push_back(f);
-                                    });
+        const Ladder ladder =
+            traceSteps(fit(*input.shape, method), std::nullopt,
+                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
+                           EXPECT_EQ(validity::complaint(curves.rings), "") << f.step;
+                           facts.push_back(f);
+                       });
         for (int step = 2; step <= 6; ++step)
             EXPECT_NEAR(facts[step].area / facts[0].area, 1, 0.01) << step;  // seen 0.002
         EXPECT_GT(facts[0].rings, 15u);
@@ -463,18 +465,87 @@ TEST(RealInputs, SilhouettesWithHolesAreValidAtEveryStep) {
         for (const Fit method : {Fit::binary, Fit::distance}) {
             const Input input = readInput(kData / name, {.invert = true});
             std::size_t holes = 0;
-            climb(fit(input.shape, method), std::nullopt,
-                  [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
-                      EXPECT_EQ(validity::complaint(curves.rings), "") << name << f.step;
-                      holes = std::max(holes, f.holes);
-                  });
+            traceSteps(fit(*input.shape, method), std::nullopt,
+                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
+                           EXPECT_EQ(validity::complaint(curves.rings), "") << name << f.step;
+                           holes = std::max(holes, f.holes);
+                       });
             if (std::string(name) == "keyring.png") {
                 EXPECT_GT(holes, 40u);  // seen 47
             }
         }
 }
 
-// ---- distances --------------------------------------------------------------------------------------------
+// ---- the ladder, as a library user climbs it ----
+
+TEST(LadderOfCurves, IsTheSameForAnyNumberOfThreads) {
+    std::vector<std::string> drawn[2];
+    for (int i = 0; i < 2; ++i) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, i ? 4 : 1);
+        Input input = readInput(kData / "keyring.png", {.invert = true});
+        const View view = viewOf(input);
+        makeLadder(std::move(input), {}, [&](const LadderStep& step) {
+            if (step.level()) drawn[i].push_back(svg(step.curves(), view));
+        });
+    }
+    EXPECT_EQ(drawn[0], drawn[1]);
+    EXPECT_GT(drawn[0].size(), 4u);
+}
+
+TEST(LadderOfCurves, VisitsTheStepsThatAreAskedForAndSaysHowTheFitWent) {
+    std::vector<std::string> names;
+    const Ladder ladder = makeLadder(readInput(kData / "africa.geojson", {.pixels = 120}),
+                                     {.halfWidth = 1.5, .firstStep = 2, .lastStep = 4},
+                                     [&](const LadderStep& step) { names.push_back(step.name()); });
+    EXPECT_THAT(names, testing::ElementsAre("L1", "L1a", "L2"));
+    EXPECT_EQ(ladder.steps.size(), 5u) << "finer ones are measured, too";
+    EXPECT_EQ(ladder.fit, Fit::distance);
+    EXPECT_EQ(ladder.band, 1.5) << "no wider than the distances are known";
+    EXPECT_EQ(ladder.fitReport.disagreeing, 0);
+    EXPECT_TRUE(ladder.fitReport.repairAgreed);
+    EXPECT_DOUBLE_EQ(ladder.fitReport.repairFloor, 1e-4 / 1.5);
+    EXPECT_GT(ladder.coefficients, ladder.controlPoints);
+    const Ladder whole = makeLadder(readInput(kData / "africa.geojson", {.pixels = 120}), {}, {});
+    EXPECT_EQ(whole.steps.back().controlPoints, 16);
+}
+
+TEST(LadderOfCurves, DrawsWithinTheToleranceAndSmoothly) {
+    const auto levels = levelCurves(readInput(kData / "keyring.png", {.invert = true}), {.lastStep = 4},
+                                    {.tolerance = 0.05, .smooth = true});
+    ASSERT_EQ(levels.size(), 3u);
+    for (const LevelCurves& level : levels) {
+        ASSERT_TRUE(level.drawn.smooth);
+        EXPECT_LE(level.drawn.smooth->deviation, 0.05);
+        EXPECT_EQ(level.drawn.smooth->rings.size(), level.facts.rings + level.facts.holes);
+    }
+    const auto crossings = levelCurves(readInput(kData / "keyring.png", {.invert = true}), {.lastStep = 0});
+    const auto finer =
+        levelCurves(readInput(kData / "keyring.png", {.invert = true}), {.lastStep = 0}, {.tolerance = 0.01});
+    EXPECT_FALSE(crossings[0].drawn.smooth);
+    EXPECT_GT(finer[0].drawn.curves.pointCount(), crossings[0].drawn.curves.pointCount());
+}
+
+TEST(LadderOfCurves, TakesValuesAndPolygonsFromMemory) {
+    std::vector<float> disc(64 * 64);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            disc[static_cast<std::size_t>(64 * y + x)] =
+                20 - static_cast<float>(std::hypot(x - 31.5, y - 31.5));
+    const auto levels = levelCurves(pictureInput(64, 64, disc, {.iso = 0}), {.lastStep = 2});
+    EXPECT_EQ(levels[1].facts.rings, 1u);
+    EXPECT_NEAR(levels[1].facts.area, M_PI * 20 * 20, 5);
+    EXPECT_THAT(errorOf([] { pictureInput(3, 3, {1, 2}); }), HasSubstr("no picture of 3 x 3 pixels"));
+    const Polygon square{{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{4, 4}, {6, 4}, {6, 6}, {4, 6}}}};
+    const Input input = polygonInput({square}, {.pixels = 100});
+    EXPECT_EQ(input.kind, "1 polygons of 2 rings, 8 points");
+    const auto drawn = levelCurves(input, {.lastStep = 0});
+    EXPECT_NEAR(drawn[0].facts.area, 96, 0.2);
+    EXPECT_EQ(drawn[0].facts.holes, 1u);
+    EXPECT_THAT(geojson(drawn[0].drawn.curves, "square"), HasSubstr("\"name\":\"square\""));
+    EXPECT_THAT(gmtText(drawn[0].drawn.curves), HasSubstr("> hole in 0"));
+}
+
+// ---- distances ----
 
 TEST(SegmentTree, AgreesWithAllPairs) {
     std::mt19937 random(3);

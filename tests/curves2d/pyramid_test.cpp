@@ -9,9 +9,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "isowave/error.h"
 #include "curves2d/fit.h"
 #include "curves2d/shapes.h"
+#include "isowave/error.h"
 
 namespace isowave::curves2d {
 namespace {
@@ -53,7 +53,7 @@ bool sameRows(const RowField<Real>& a, const RowField<Real>& b) {
     return true;
 }
 
-// ---- row field --------------------------------------------------------------------------------------------
+// ---- row field ----
 
 TEST(RowField, TransposedTwiceIsTheSameToTheBit) {
     for (const auto& [name, shape] : shapes::all()) {
@@ -139,7 +139,7 @@ TEST(RowField, DefinedNodesAreThoseWithSixteenKnownControlPoints) {
     }
 }
 
-// ---- fit --------------------------------------------------------------------------------------------------
+// ---- fit ----
 
 TEST(Fit, SignsAgreeWithTheBitmapAtEveryLatticePoint) {
     for (const auto& [name, shape] : shapes::all()) {
@@ -170,7 +170,7 @@ TEST(Fit, AnEmptyShapeGivesAnEmptyFieldAndNoSteps) {
     EXPECT_EQ(analyse(field).stepCount(), 0);
 }
 
-// ---- pyramid ----------------------------------------------------------------------------------------------
+// ---- pyramid ----
 
 template <class Real>
 double worstRoundTrip() {
@@ -228,14 +228,14 @@ TEST(PlanePyramid, RefusesPartsThatDoNotBelongTogether) {
     EXPECT_THROW(c.field(0), InputError);
 }
 
-TEST(PlanePyramid, StepsAreNamedAsInTheTableOfThePaper) {
-    EXPECT_EQ(stepName(0), "1");
-    EXPECT_EQ(stepName(1), "1a");
-    EXPECT_EQ(stepName(2), "2");
-    EXPECT_EQ(stepName(19), "10a");
+TEST(PlanePyramid, StepsAreNamedByLevelAndAHalfStepByTheLevelBefore) {
+    EXPECT_EQ(stepName(0), "L0");
+    EXPECT_EQ(stepName(1), "L0a");
+    EXPECT_EQ(stepName(2), "L1");
+    EXPECT_EQ(stepName(19), "L9a");
 }
 
-// ---- the oracle -------------------------------------------------------------------------------------------
+// ---- the oracle ----
 
 struct Golden {
     std::vector<RowField<double>> fields;

@@ -1,4 +1,4 @@
-// Catmull-Clark backwards, one step: the seed's numbers, every kind of vertex, all variants.
+// Catmull-Clark backwards, one step: the published numbers (O section 6), every kind of vertex, all variants.
 #include "subdivision/meshes/catmull_clark.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(CatmullClark, SubdividesAsTheRulesSay) {
         const CatmullClarkStep step(mesh, CatmullClarkVariant::trial);
         EXPECT_LT(distance(step.subdivide(mesh.points), plainSubdivision(mesh)), 1e-14)
             << name;  // seen 9e-16
-        PolygonMesh fine = step.refined();
+        PolygonMesh fine = step.fineMesh();
         fine.points = step.subdivide(mesh.points);
         EXPECT_TRUE(defects(fine).empty()) << name << ": " << defects(fine).front();
         EXPECT_EQ(fine.faceCount(), mesh.corners.size()) << name;
@@ -90,7 +90,7 @@ TEST(CatmullClark, SubdividesAsTheRulesSay) {
 TEST(CatmullClark, KeepsTheCanonicalOrderThatStepsPromise) {
     for (const auto& [name, mesh] : all()) {
         const CatmullClarkStep step(mesh, CatmullClarkVariant::refined);
-        const PolygonMesh fine = step.refined();
+        const PolygonMesh fine = step.fineMesh();
         for (std::size_t c = 0; c < mesh.corners.size(); ++c)
             ASSERT_EQ(fine.corners[fine.faceBegin[c]], mesh.corners[c]) << name;
     }
@@ -175,7 +175,7 @@ TEST(CatmullClark, OfTheCubeHasRank7AndOfTheTetrahedronFullRank) {
         EXPECT_EQ(rankOf(mesh), Eigen::Index(mesh.vertexCount())) << name;
 }
 
-// ---- the seed's numbers ----
+// ---- the published numbers ----
 
 constexpr Index kSide = 16;
 
@@ -183,7 +183,7 @@ constexpr Index kSide = 16;
 // [0][0] at the vertex itself. `map` takes fine points and returns coarse ones.
 template <class Map>
 std::map<std::pair<int, int>, double> rowAt(const CatmullClarkStep& step, Index vertex, Map map) {
-    const PolygonMesh fine = step.refined();
+    const PolygonMesh fine = step.fineMesh();
     const Adjacency adjacency(fine);
     // Walk out from the vertex: i steps straight ahead, then j to the left.
     std::map<std::pair<int, int>, double> row;
@@ -218,7 +218,7 @@ double squaredNorm(const std::map<std::pair<int, int>, double>& row) {
     return sum;
 }
 
-TEST(CatmullClark, OfARegularMeshHasTheTrialMaskOfTheSeed) {
+TEST(CatmullClark, OfARegularMeshHasThePublishedTrialMask) {
     const auto row = rowOfA(CatmullClarkVariant::trial);
     ASSERT_EQ(row.size(), 9u);
     for (int i = -1; i <= 1; ++i)
@@ -248,7 +248,7 @@ double shiftBy(const CatmullClarkStep& step, Index vertex, Index detail) {
     return step.shift(unit)[vertex].x;
 }
 
-TEST(CatmullClark, RefinesRegularVerticesByTheSeedsWeights) {
+TEST(CatmullClark, RefinesRegularVerticesByTheWeightsOfOlsenAndSamavati) {
     const PolygonMesh mesh = torus(kSide, kSide);
     const CatmullClarkStep step(mesh, CatmullClarkVariant::refined);
     const Adjacency& adjacency = step.adjacency();

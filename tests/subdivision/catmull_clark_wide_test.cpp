@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "subdivision/filters/construct.h"
+#include "subdivision/filters/masks.h"
 #include "tests/subdivision/mesh_zoo.h"
 
 namespace isowave::subdivision {

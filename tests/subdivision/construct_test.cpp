@@ -5,28 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "isowave/error.h"
-#include "subdivision/filters/diagram_print.h"
 #include "subdivision/filters/exact_solve.h"
+#include "subdivision/filters/masks.h"
+#include "tests/subdivision/numbers.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
 
 using testing::HasSubstr;
-
-Node at(int x) { return {x, 0}; }
-
-// Taps on the line from `first` on: "23/196 -23/49 ..".
-Diagram line(int first, const char* taps) {
-    Diagram diagram;
-    for (const auto& value : parseRationals(taps)) diagram.add(at(first++), value);
-    return diagram;
-}
-
-Rational q(const char* text) { return parseRational(text); }
 
 TEST(Rational, IsReadAndWrittenExactly) {
     EXPECT_EQ(toString(q("46/98")), "23/49");
@@ -58,8 +46,7 @@ TEST(ExactSolve, LeastNormIsOrthogonalToTheNullspace) {
     EXPECT_FALSE(leastNorm(e, {1, 2, 4})) << "the rows are dependent, the right sides are not";
 }
 
-// --- diagrams
-// -----------------------------------------------------------------------------------------------
+// ---- diagrams ----
 
 TEST(Diagram, SpiralStartsAboveAndRunsClockwise) {
     const auto nodes = spiral(Lattice::Triangular, {}, 2);
@@ -94,8 +81,7 @@ TEST(Diagram, ForgetsZeros) {
     EXPECT_EQ(a[at(1)], 0);
 }
 
-// --- the line
-// -----------------------------------------------------------------------------------------------
+// ---- the line ----
 
 TEST(Cubic, HasNoAOfWidthOneAndSaysWhichIsTheSmallest) {
     EXPECT_THAT(complaint([] { construct(namedMask("cubic"), 1); }),
@@ -216,8 +202,7 @@ TEST(Proof, FailsWhenOneValueIsWrong) {
     }
 }
 
-// --- the triangular lattice
-// ---------------------------------------------------------------------------------
+// ---- the triangular lattice ----
 
 // Values by ring: `corners` are the ring's nodes on the six axes.
 struct RingValues {
@@ -343,11 +328,9 @@ TEST(TriangularMask, WithADependentColumnIsRefused) {
     EXPECT_THAT(complaint([&] { construct(mask, 2); }), HasSubstr("not injective"));
 }
 
-// --- the quad lattice
-// ---------------------------------------------------------------------------------------
+// ---- the quad lattice ----
 
-// --- numbers that no machine word holds
-// -----------------------------------------------------------------------------------------------
+// ---- numbers that no machine word holds ----
 
 Integer largestDenominator(const Diagram& diagram) {
     Integer most = 1;
@@ -406,50 +389,6 @@ TEST(QuadMask, NotAProductAndNotInterpolatingHasAOneTapInverse) {
     const auto a0 = oneTapInverse(mask, 2);
     ASSERT_TRUE(a0);
     EXPECT_TRUE(prove(construct(mask, 3)));
-}
-
-// --- pictures
-// -----------------------------------------------------------------------------------------------
-
-TEST(Picture, OfARowShowsItsCentreInBrackets) {
-    EXPECT_EQ(picture(construct(namedMask("cubic"), 7).a, Lattice::Line, {}),
-              "1/196 x  23   -92   63  [208]  63   -92   23 \n");
-}
-
-TEST(Picture, OfAHexagonMovesEachRowByHalfACell) {
-    EXPECT_EQ(picture(construct(namedMask("butterfly"), 3).a, Lattice::Triangular, {}),
-              "1/71 x\n"
-              "       -2  2   2   -2\n"
-              "     2   1   -6  1   2\n"
-              "   2   -6  4   4   -6  2\n"
-              " -2  1   4  [65] 4   1   -2\n"
-              "   2   -6  4   4   -6  2\n"
-              "     2   1   -6  1   2\n"
-              "       -2  2   2   -2\n");
-}
-
-TEST(Picture, AsSvgHoldsEveryValueOnce) {
-    const std::string text = svg(construct(namedMask("butterfly"), 3).a, Lattice::Triangular, {}, "A");
-    std::size_t marks = 0;
-    for (std::size_t k = text.find("stroke=\"#222\" stroke-width=\"0.8\""); k != std::string::npos;
-         k = text.find("stroke=\"#222\" stroke-width=\"0.8\"", k + 1)) {
-        ++marks;
-    }
-    EXPECT_EQ(marks, 36u);  // and the centre, drawn thicker
-    EXPECT_THAT(text, HasSubstr("</svg>"));
-}
-
-TEST(Json, OfFiltersKeepsTheRationals) {
-    const auto cubic = nlohmann::json::parse(json(construct(namedMask("cubic"), 7)));
-    EXPECT_EQ(cubic["version"], 1);
-    EXPECT_EQ(cubic["A"]["values"][0], "23/196");
-    EXPECT_EQ(cubic["A"]["nodes"][0], -3);
-    EXPECT_EQ(cubic["B"][0]["centre"], 1) << "a number on the line";
-    EXPECT_EQ(cubic["proof"]["holds"], true);
-    const auto loop = nlohmann::json::parse(json(construct(namedMask("loop"), 1)));
-    EXPECT_EQ(loop["Q"].size(), 3u);
-    EXPECT_EQ(loop["Q"][0]["centre"], (std::vector<int>{1, 0})) << "a pair elsewhere";
-    EXPECT_EQ(loop["Q"][0]["nodes"][0].size(), 2u);
 }
 
 }  // namespace

@@ -9,20 +9,14 @@
 #include <random>
 
 #include "subdivision/curves/curve_files.h"
+#include "subdivision/filters/masks.h"
+#include "tests/subdivision/numbers.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
 
 using testing::HasSubstr;
-
-Node at(int x) { return {x, 0}; }
-Rational q(const char* text) { return parseRational(text); }
-Diagram line(int first, const char* taps) {
-    Diagram diagram;
-    for (const auto& value : parseRationals(taps)) diagram.add(at(first++), value);
-    return diagram;
-}
 
 Polyline noise(std::size_t points, int dimension, bool closed, unsigned seed) {
     std::mt19937 generator(seed);
@@ -32,22 +26,11 @@ Polyline noise(std::size_t points, int dimension, bool closed, unsigned seed) {
     return curve;
 }
 
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double v : values) most = std::max(most, std::abs(v));
-    return most;
-}
-
 double largestDifference(const Polyline& a, const Polyline& b) {
-    EXPECT_EQ(a.coordinates.size(), b.coordinates.size());
-    double most = 0;
-    for (std::size_t k = 0; k < a.coordinates.size(); ++k)
-        most = std::max(most, std::abs(a.coordinates[k] - b.coordinates[k]));
-    return most;
+    return subdivision::largestDifference(a.coordinates, b.coordinates);
 }
 
-// --- open ends, exactly
-// -------------------------------------------------------------------------------------
+// ---- open ends, exactly ----
 
 TEST(OpenCubic, SubdivisionIsKnotInsertionWithFourFoldEnds) {
     const OpenSystem open = openSystem(curveScheme("cubic-7"), 14);
@@ -137,8 +120,7 @@ TEST(DynLevinGregory, RefinedInside) {
     }
 }
 
-// --- all sizes, exactly
-// -------------------------------------------------------------------------------------
+// ---- all sizes, exactly ----
 
 TEST(CurveSystems, HoldExactlyForEverySmallOpenSize) {
     for (const auto& name : curveSchemeNames()) {
@@ -229,8 +211,7 @@ TEST(CurveFilters, SizesAreConsistent) {
     }
 }
 
-// --- round trips
-// --------------------------------------------------------------------------------------------
+// ---- round trips ----
 
 // Every scheme, open and closed, 2D and 3D, every size from the smallest to 130 and some larger, all levels
 // there are.
@@ -254,12 +235,6 @@ TEST(CurveRoundTrip, OfNoiseThroughAllLevelsIsExactToTwelveDigits) {
     }
     RecordProperty("worst", std::to_string(worst));
     EXPECT_GT(worst, 0);
-}
-
-double rms(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double v : values) sum += v * v;
-    return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 double largestStored(const CurveLevels& levels) {
@@ -465,8 +440,7 @@ TEST(Resampled, PointsStandAtEqualSteps) {
     EXPECT_EQ(open.coordinates, (std::vector<double>{0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 3}));
 }
 
-// --- quality, on coasts
-// -------------------------------------------------------------------------------------
+// ---- quality, on coasts ----
 
 // O-T1, "Coast", 4096 points, 6 levels: 382.8 (trial), 327.9 (refined), 326.0 (optimal), that is 1, 0.857,
 // 0.852.
@@ -510,8 +484,7 @@ TEST(CurveQuality, OnTenCoastsHasTheOrderOfThePublishedTable) {
     EXPECT_GT(mean["cubic-3"], 3);  // seen 6.2: a narrow A amplifies what is rough
 }
 
-// --- bad input
-// ----------------------------------------------------------------------------------------------
+// ---- bad input ----
 
 TEST(BadCurve, TooShortSaysHowManyPointsAreNeeded) {
     const CurveFilters closed(curveScheme("dlg-refined"), true), open(curveScheme("cubic-7"), false);

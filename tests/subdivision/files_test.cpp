@@ -10,11 +10,7 @@
 
 #include "isowave/error.h"
 #include "subdivision/curves/curve_files.h"
-#include "subdivision/curves/curve_report.h"
 #include "subdivision/lattice/grid_files.h"
-#include "subdivision/lattice/picture_files.h"
-#include "subdivision/lattice/relief.h"
-#include "subdivision/lattice/relief_report.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
@@ -29,8 +25,7 @@ std::filesystem::path fresh(const std::string& name) {
     return folder / name;
 }
 
-// --- curves
-// -------------------------------------------------------------------------------------------------
+// ---- curves ----
 
 TEST(CurveText, HoldsManyCurvesOpenAndClosed) {
     const CurveFile file = CurveFile::parse(
@@ -166,98 +161,47 @@ TEST(CurveFiles, SurviveEveryTruncation) {
     }
 }
 
-// --- grids
-// --------------------------------------------------------------------------------------------------
+// ---- grids ----
 
-std::string npy(const std::string& dictionary, const std::string& data) {
-    std::string header = dictionary + "\n", bytes = "\x93NUMPY\x01";
-    bytes += '\0';
-    bytes += static_cast<char>(header.size() & 255);
-    bytes += static_cast<char>(header.size() >> 8);
-    return bytes + header + data;
+std::filesystem::path file(const std::string& name, const std::string& bytes) {
+    std::ofstream(fresh(name), std::ios::binary | std::ios::trunc) << bytes;
+    return fresh(name);
 }
 
-TEST(Npy, WrittenIsReadBack) {
+TEST(Grids, OfPointsAreReadBackAndGapsAreNamed) {
     for (const std::size_t channels : {1, 3}) {
         Grid grid{3, 4, channels, {}};
         for (std::size_t k = 0; k < 12 * channels; ++k)
             grid.values.push_back(0.1 * static_cast<double>(k) - 0.5);
-        const Grid again = parseNpy(npyBytes(grid), "n");
+        const Grid again = readGrid(file("g.npy", npyBytes(grid)));
         EXPECT_EQ(again.values, grid.values);
         EXPECT_EQ(again.rows, 3u);
         EXPECT_EQ(again.channels, channels);
     }
-}
-
-TEST(Npy, ReadsOtherTypesAndOrders) {
-    const std::string big("\x00\x01\x00\x02\xff\xff\x01\x00", 8);
-    const Grid a = parseNpy(npy("{'descr': '>i2', 'fortran_order': False, 'shape': (2, 2), }", big), "n");
-    EXPECT_THAT(a.values, ElementsAre(1, 2, -1, 256));
-    const Grid b = parseNpy(
-        npy("{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3), }", std::string("\1\2\3\4\5\6")), "n");
-    EXPECT_THAT(b.values, ElementsAre(1, 3, 5, 2, 4, 6));
-    const float value = 1.5f;
-    std::string floats(16, '\0');
-    for (int k = 0; k < 4; ++k) std::memcpy(floats.data() + 4 * k, &value, 4);
-    EXPECT_EQ(
-        parseNpy(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2), }", floats), "n").values[3],
-        1.5);
-}
-
-TEST(Npy, BadFilesAreRefusedWithTheReason) {
-    const auto tell = [](const std::string& bytes) { return complaint([&] { parseNpy(bytes, "n.npy"); }); };
-    const std::string good = npyBytes({2, 2, 1, {1, 2, 3, 4}});
-    EXPECT_THAT(tell("hello world"), HasSubstr("n.npy: is not a NumPy array"));
-    EXPECT_THAT(tell(good.substr(0, good.size() - 1)),
-                HasSubstr("needs 32 bytes but the file holds 31; it is truncated"));
-    EXPECT_THAT(tell(npy("{'descr': '<c16', 'fortran_order': False, 'shape': (2, 2), }", "")),
-                HasSubstr("type '<c16'"));
-    EXPECT_THAT(tell(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (4,), }", "")),
-                HasSubstr("shape (4,)"));
-    EXPECT_THAT(tell(npy("{'descr': '<f8', 'fortran_order': False, }", "")), HasSubstr("no 'shape'"));
-    EXPECT_THAT(
-        tell(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 99999999999), }", "")),
-        HasSubstr("2^20"));
-    EXPECT_THAT(tell(npyBytes({2, 2, 1, {1, std::nan(""), 3, std::nan("")}})),
+    EXPECT_THAT(complaint([] {
+                    readGrid(file("n.npy", npyBytes({2, 2, 1, {1, std::nan(""), 3, std::nan("")}})));
+                }),
                 HasSubstr("2 of 4 samples hold no finite number, the first at row 0, column 1"));
-    for (std::size_t length = 0; length < good.size(); ++length)
-        EXPECT_THROW(parseNpy(std::string(good.data(), length), "n"), InputError);
-}
-
-TEST(AsciiGrid, IsRead) {
-    const Grid grid = parseAsc(
-        "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 5\nNODATA_value -1\n1 2 3\n4 5 6.5\n", "a");
-    EXPECT_EQ(grid.rows, 2u);
-    EXPECT_THAT(grid.values, ElementsAre(1, 2, 3, 4, 5, 6.5));
-}
-
-TEST(AsciiGrid, BadFilesAreRefusedWithTheReason) {
-    const auto tell = [](const char* text) { return complaint([&] { parseAsc(text, "a.asc"); }); };
-    EXPECT_THAT(tell("1 2 3"), HasSubstr("no 'ncols'"));
-    EXPECT_THAT(tell("ncols 3\nnrows 2\n1 2 3 4"), HasSubstr("say 6 samples but 4 can be read"));
-    EXPECT_THAT(tell("ncols 3\nnrows x\n"), HasSubstr("'nrows' has no number"));
-    EXPECT_THAT(tell("ncols -3\nnrows 2\n"), HasSubstr("from 2 to 2^20"));
-    EXPECT_THAT(tell("ncols 2\nnrows 2\n1 2 -9999 -9999"),
-                HasSubstr("2 of 4 samples are without data, the first at row 1, column 0"));
+    EXPECT_EQ(readGrid(file("a.asc", "ncols 3\nnrows 2\n1 2 3 4 5 6.5\n")).at(1, 2), 6.5);
 }
 
 TEST(Pictures, WrittenAreReadBack) {
     Grid grid{3, 5, 1, {}};
     for (int k = 0; k < 15; ++k) grid.values.push_back(17 * k);
-    const auto path = fresh("a.png");
-    writePng(path, grid, 0, 255);
-    const Grid again = readPictureOrGrid(path);
+    const auto path = file("a.png", pngBytes(grid, 0, 255));
+    const Grid again = readGrid(path);
     EXPECT_EQ(again.rows, 3u);
     EXPECT_EQ(again.columns, 5u);
     EXPECT_EQ(again.values, grid.values);
-    writePng(path, grid, 238, 0);  // a negative: what is larger is darker
-    EXPECT_EQ(readPictureOrGrid(path).at(0, 0), 255);
-    EXPECT_EQ(readPictureOrGrid(path).at(2, 4), 0);
+    file("a.png", pngBytes(grid, 238, 0));  // a negative: what is larger is darker
+    EXPECT_EQ(readGrid(path).at(0, 0), 255);
+    EXPECT_EQ(readGrid(path).at(2, 4), 0);
     std::filesystem::resize_file(path, 40);
-    EXPECT_THAT(complaint([&] { readPictureOrGrid(path); }), HasSubstr("a.png: cannot be read as a picture"));
-    EXPECT_THAT(complaint([&] { readPictureOrGrid(fresh("none.tif")); }), HasSubstr("cannot be opened"));
-    EXPECT_THAT(complaint([&] { readPictureOrGrid(fresh("x.bmp")); }), HasSubstr(".npy .asc .png .tif"));
-    EXPECT_THROW(writePng("/no/folder/a.png", grid, 0, 255), OperationError);
+    EXPECT_THAT(complaint([&] { readGrid(path); }), HasSubstr("a.png: this PNG ends after 40 bytes"));
+    std::filesystem::create_directories(fresh("folder.png"));
+    EXPECT_THAT(complaint([&] { readGrid(fresh("folder.png")); }), HasSubstr("is a folder"));
+    EXPECT_THAT(complaint([&] { readGrid(fresh("none.tif")); }), HasSubstr("cannot be opened"));
+    EXPECT_THAT(complaint([&] { readGrid(fresh("x.bmp")); }), HasSubstr(".npy .asc .png .tif"));
 }
 
 // A float TIFF, uncompressed, one strip, made by hand.
@@ -287,11 +231,11 @@ TEST(Pictures, FloatTiffIsReadAndATruncatedOneRefused) {
     const auto path = fresh("a.tif");
     const std::string whole = tiff({1.5f, -2, 3, 4, 5, 6.25f}, 3, 2);
     std::ofstream(path, std::ios::binary) << whole;
-    EXPECT_THAT(readPictureOrGrid(path).values, ElementsAre(1.5, -2, 3, 4, 5, 6.25));
+    EXPECT_THAT(readGrid(path).values, ElementsAre(1.5, -2, 3, 4, 5, 6.25));
     for (const std::size_t length : {std::size_t{0}, std::size_t{3}, std::size_t{20}, whole.size() - 30}) {
         std::ofstream(path, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
-        EXPECT_THAT(complaint([&] { readPictureOrGrid(path); }),
-                    HasSubstr("a.tif: cannot be read as a picture"))
+        EXPECT_THAT(complaint([&] { readGrid(path); }),
+                    HasSubstr(length < 4 ? "a.tif: is no TIFF" : "a.tif: cannot be read as a picture"))
             << length;
     }
 }
@@ -306,163 +250,7 @@ TEST(Pictures, DeepPngKeepsItsSixteenBits) {
         0x7f, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
     const auto path = fresh("deep.png");
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes), sizeof(bytes));
-    EXPECT_THAT(readPictureOrGrid(path).values, ElementsAre(0, 1, 256, 65535));
-}
-
-// --- reports
-// ------------------------------------------------------------------------------------------------
-
-TEST(CurveReport, OfTwoCurvesWritesEveryLevelAndSaysWhichIsTooShort) {
-    std::string lines = ">\n";
-    for (int k = 0; k <= 64; ++k)
-        lines += std::to_string(std::cos(M_PI * k / 32)) + " " +
-                 std::to_string(std::sin(M_PI * k / 32) + (k % 64 == 5)) + "\n";
-    lines += ">\n0 0\n1 0\n1 1\n0 0\n";
-    const CurveFile file = CurveFile::parse(lines, ".txt", "t");
-    const CurveReport report = reportCurves(file, ".txt", {.levels = 3, .threshold = 0.01, .compare = true});
-    ASSERT_EQ(report.curves.size(), 2u);
-    EXPECT_THAT(report.curves[0].points, ElementsAre(64, 32, 16, 8));
-    EXPECT_THAT(report.curves[1].points, ElementsAre(3, 2, 1));
-    EXPECT_THAT(report.remarks, ElementsAre(HasSubstr("1 of 2 curves are too short for 3 levels")));
-    EXPECT_LT(report.curves[0].error[0], 1e-12);
-    EXPECT_LT(report.curves[0].error[1], report.curves[0].error[3]);
-    EXPECT_LT(report.curves[0].detailsLeft, report.curves[0].details);
-    EXPECT_GT(report.curves[0].thresholdError, 0);
-    EXPECT_LT(report.curves[0].compared.at("dlg-refined"), report.curves[0].compared.at("dlg-trial"));
-    EXPECT_EQ(report.files.size(), 6u);
-    EXPECT_EQ(CurveFile::parse(report.files.at("level_2.txt"), ".txt", "l").curves()[0].size(), 16u);
-    EXPECT_EQ(CurveFile::parse(report.files.at("smooth.txt"), ".txt", "l").curves()[0].size(), 64u);
-    EXPECT_THAT(text(report), HasSubstr("0.857"));
-    EXPECT_EQ(nlohmann::json::parse(json(report))["curves"].size(), 2u);
-    EXPECT_THAT(complaint([&] { reportCurves(file, ".txt", {.levels = 9}); }),
-                HasSubstr("need at least 257"));
-    EXPECT_THAT(complaint([&] { reportCurves(file, ".txt", {.scheme = "x"}); }), HasSubstr("dlg-refined"));
-    const CurveReport kept =
-        reportCurves(file, ".txt", {.scheme = "cubic", .levels = 2, .resample = 50, .keep = 10});
-    EXPECT_THAT(kept.curves[1].points, ElementsAre(50, 25, 13));
-    EXPECT_EQ(kept.curves[0].detailsLeft, 10u);
-    EXPECT_EQ(reportCurves(file, ".txt", {.mask = "1/4 3/4 3/4 1/4", .levels = 1}).scheme, "mask-4");
-}
-
-TEST(ReliefReport, HoldsPicturesAndNumbersOfEveryLevel) {
-    const Grid grid = readGrid(ISOWAVE_TEST_DATA "/terrain/jacksboro.npy");
-    const ReliefReport report =
-        reportRelief(grid, {.scheme = "butterfly-3", .layout = ReliefLayout::Quincunx, .levels = 2});
-    ASSERT_EQ(report.levels.size(), 3u);
-    EXPECT_EQ(report.levels[0].patch, "hexagon 48");
-    EXPECT_LT(report.roundTrip, 1e-12 * 1040);
-    EXPECT_LT(report.levels[0].suppressedRms, report.levels[1].suppressedRms);
-    EXPECT_LT(report.levels[1].suppressedRms, report.levels[2].suppressedRms);
-    for (const char* name :
-         {"level_0.npy", "level_2.png", "shade_1.png", "details_0.png", "details_1.png", "suppressed.npy",
-          "suppressed.png", "suppressed_shade.png", "reconstructed.npy"}) {
-        EXPECT_TRUE(report.files.contains(name)) << name;
-    }
-    EXPECT_FALSE(report.files.contains("details_2.png"));
-    std::ofstream(fresh("details.png"), std::ios::binary) << report.files.at("details_0.png");
-    const Grid details = readPictureOrGrid(fresh("details.png"));
-    EXPECT_EQ(*std::max_element(details.values.begin(), details.values.end()),
-              255);  // vertex nodes hold no detail
-    EXPECT_EQ(*std::min_element(details.values.begin(), details.values.end()), 0);
-    EXPECT_THAT(text(report), HasSubstr("hexagon 12"));
-    EXPECT_EQ(nlohmann::json::parse(json(report))["levels"].size(), 3u);
-}
-
-// --- reliefs
-// ------------------------------------------------------------------------------------------------
-
-double rms(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double v : values) sum += v * v;
-    return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-TEST(Relief, LayoutsTakeTheMiddle) {
-    Grid grid{11, 24, 1, {}};
-    for (std::size_t r = 0; r < 11; ++r) {
-        for (std::size_t c = 0; c < 24; ++c) grid.values.push_back(static_cast<double>(100 * r + c));
-    }
-    const SurfaceField rows = reliefField(grid, ReliefLayout::Rows, 2);
-    EXPECT_EQ(rows.patch, Patch::parallelogram(20, 8));
-    EXPECT_EQ(rows.values[0], 101);  // row 1, column 1
-    EXPECT_EQ(reliefPicture(rows, ReliefLayout::Rows).at(3, 5), 406);
-    const SurfaceField hexagon = reliefField(grid, ReliefLayout::Quincunx, 2);
-    EXPECT_EQ(hexagon.patch, Patch::hexagon(4));
-    EXPECT_EQ(hexagon.values[hexagon.patch.index({0, 0})], 511);
-    EXPECT_EQ(hexagon.values[hexagon.patch.index({1, 0})], 513);
-    EXPECT_EQ(hexagon.values[hexagon.patch.index({0, 1})], 612);
-    const Grid picture = reliefPicture(hexagon, ReliefLayout::Quincunx);
-    EXPECT_EQ(picture.at(4, 8), 511);
-    EXPECT_EQ(picture.at(4, 9), 512);  // between two samples, their mean
-    EXPECT_TRUE(std::isnan(picture.at(0, 0)));
-    EXPECT_THAT(complaint([&] { reliefField(grid, ReliefLayout::Rows, 4); }),
-                HasSubstr("11 x 24 samples is too small for 4 levels; they need 17 x 17"));
-    EXPECT_THAT(complaint([&] { reliefField(grid, ReliefLayout::Quincunx, 3); }),
-                HasSubstr("17 rows and 33 columns"));
-}
-
-// B section 11 on a real relief: exact with details; without, wider A come closer than dropping samples does.
-TEST(Relief, OfATerrainIsExactAndBetterThanDroppingSamples) {
-    const Grid grid = readGrid(ISOWAVE_TEST_DATA "/terrain/jacksboro.npy");
-    ASSERT_EQ(grid.rows, 161u);
-    for (const ReliefLayout layout : {ReliefLayout::Rows, ReliefLayout::Quincunx}) {
-        const SurfaceField field = reliefField(grid, layout, 2);
-        std::map<std::string, double> suppressed;
-        for (const auto& name : surfaceSchemeNames()) {
-            SurfaceFilters filters(surfaceScheme(name));
-            const SurfaceLevels levels = decompose(field, filters, 2);
-            const auto difference = [&](const SurfaceField& other) {
-                std::vector<double> d;
-                for (std::size_t k = 0; k < field.values.size(); ++k)
-                    d.push_back(other.values[k] - field.values[k]);
-                return rms(d);
-            };
-            EXPECT_LT(difference(reconstruct(levels, filters)), 1e-12 * 1040);
-            suppressed[name] = difference(subdivided(levels, filters, 2));
-            EXPECT_GT(rms(detailField(levels, 0).values), 0);
-        }
-        for (const auto& [name, error] : suppressed) {
-            std::printf("%-10s %-18s details suppressed: rms %.2f m\n",
-                        layout == ReliefLayout::Rows ? "rows" : "quincunx", name.c_str(), error);
-        }
-        EXPECT_LT(suppressed["butterfly-3"], suppressed["butterfly-trivial"]);
-        EXPECT_LT(suppressed["butterfly-4"], suppressed["butterfly-3"]);
-        EXPECT_LT(suppressed["loop-3"], suppressed["loop-1"]);
-    }
-}
-
-TEST(Relief, OfATorusOfPointsIsASurfaceInSpace) {
-    // A grid of points in 3D, closed both ways: no side at all.
-    const Patch patch = Patch::torus(64, 32);
-    SurfaceField field{patch, 3, {}};
-    for (const Node n : patch.nodes()) {
-        const double u = 2 * M_PI * n.x / 64, v = 2 * M_PI * n.y / 32;
-        for (const double value :
-             {(2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v)})
-            field.values.push_back(value);
-    }
-    SurfaceFilters filters(surfaceScheme("butterfly-3"));
-    double last = 1e9;
-    for (int levels = 3; levels >= 1;
-         --levels) {  // the coarser the base, the larger the error: 16x for a halved step
-        const SurfaceLevels made = decompose(field, filters, levels);
-        const auto without = subdivided(made, filters, levels).values;
-        double most = 0;
-        for (std::size_t k = 0; k < without.size(); ++k)
-            most = std::max(most, std::abs(without[k] - field.values[k]));
-        std::printf("torus, %d levels suppressed: largest error %.2e\n", levels, most);
-        EXPECT_LT(most, last / 6);
-        last = most;
-    }
-}
-
-TEST(Relief, ShadingIsBetweenDarkAndLight) {
-    Grid slope{4, 4, 1, {}};
-    for (int k = 0; k < 16; ++k) slope.values.push_back(k % 4);  // rises to the right: towards the light
-    Grid flat{4, 4, 1, std::vector<double>(16, 3.0)};
-    EXPECT_GT(shaded(slope, 1).at(1, 1), shaded(flat, 1).at(1, 1));
-    for (double& value : slope.values) value = -value;
-    EXPECT_LT(shaded(slope, 1).at(1, 1), shaded(flat, 1).at(1, 1));
+    EXPECT_THAT(readGrid(path).values, ElementsAre(0, 1, 256, 65535));
 }
 
 }  // namespace

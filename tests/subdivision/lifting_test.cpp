@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "subdivision/meshes/mesh_scheme.h"
+#include "subdivision/meshes/mesh_schemes.h"
 #include "tests/subdivision/mesh_zoo.h"
 
 namespace isowave::subdivision {

@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr PolygonFormat kFormats[] = {PolygonFormat::obj, PolygonFormat::off, PolygonFormat::ply};
+constexpr MeshFormat kFormats[] = {MeshFormat::obj, MeshFormat::off, MeshFormat::ply};
 
 PolygonMesh with(PolygonMesh mesh, const std::function<void(PolygonMesh&)>& change) {
     change(mesh);
@@ -157,19 +157,19 @@ TEST(MeshFiles, ReadWhatOthersWrite) {
     const auto obj = parsePolygonMesh(
         "# x\no thing\nv +0 0 0 1\r\nv 1e0 0 0\nvt 0 0\nv 1 1 0\nvn 0 0 1\nusemtl m\n"
         "f 1/1/1 2//1 -1 # end\nt interpolateboundary 1/0/0 2\nt crease 2/1/0 0 1 6.0\n",
-        PolygonFormat::obj, "a.obj");
+        MeshFormat::obj, "a.obj");
     EXPECT_THAT(obj.corners, ElementsAre(0, 1, 2));
     EXPECT_EQ(obj.creases.size(), 1u);
     for (const char* text : {"OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
                              "OFF 3 1 0\n# c\n\n0 0 0\n1 0 0\n1 1 0 9 9 9\n3 0 1 2 255 0 0\n",
                              "COFF\n3 1 3\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n3 0 1 2"})
-        EXPECT_THAT(parsePolygonMesh(text, PolygonFormat::off, "a.off").corners, ElementsAre(0, 1, 2));
+        EXPECT_THAT(parsePolygonMesh(text, MeshFormat::off, "a.off").corners, ElementsAre(0, 1, 2));
     const std::string ascii =
         "ply\nformat ascii 1.0\ncomment t crease 2/1/0 1 2 3\nelement vertex 3\nproperty float y\nproperty "
         "float x\nproperty uchar red\n"
         "property float z\nelement extra 1\nproperty list uchar int w\nelement face 1\nproperty uchar flag\n"
         "property list uchar int vertex_index\nend_header\n0 0 7 0\n0 1 7 0\n1 1 7 0\n2 5 6\n1 3 0 1 2\n";
-    const auto ply = parsePolygonMesh(ascii, PolygonFormat::ply, "a.ply");
+    const auto ply = parsePolygonMesh(ascii, MeshFormat::ply, "a.ply");
     EXPECT_THAT(ply.corners, ElementsAre(0, 1, 2));
     EXPECT_EQ(ply.points[1], (Vec3{1, 0, 0}));
     EXPECT_EQ(ply.creases.size(), 1u);
@@ -179,10 +179,10 @@ TEST(MeshFiles, ReadWhatOthersWrite) {
         "element face 1\nproperty list uchar short vertex_indices\nend_header\n";
     for (const int c : {0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 3, 0, 0, 0, 1, 0, 2})
         big += char(c);
-    EXPECT_EQ(parsePolygonMesh(big, PolygonFormat::ply, "b.ply").points[1], (Vec3{256, 0, 0}));
+    EXPECT_EQ(parsePolygonMesh(big, MeshFormat::ply, "b.ply").points[1], (Vec3{256, 0, 0}));
 }
 
-std::string complaint(const std::string& bytes, PolygonFormat format) {
+std::string complaint(const std::string& bytes, MeshFormat format) {
     try {
         const PolygonMesh mesh = parsePolygonMesh(bytes, format, "m");
         requireManifold(mesh, "m");
@@ -192,26 +192,31 @@ std::string complaint(const std::string& bytes, PolygonFormat format) {
     return "";
 }
 
+// The words of io/mesh: tests/io/mesh has more of them.
 TEST(MeshFiles, SayWhichLineIsWrong) {
-    EXPECT_THAT(complaint("v 0 0 0\nv 1 0 x\n", PolygonFormat::obj),
-                HasSubstr("m: line 2: 'x' is not a coordinate"));
-    EXPECT_THAT(complaint("v 0 0\n", PolygonFormat::obj), HasSubstr("line 1: ends where a coordinate"));
-    EXPECT_THAT(complaint("v 0 0 0\nf 1 0 2\n", PolygonFormat::obj), HasSubstr("line 2: '0' is no vertex"));
-    EXPECT_THAT(complaint("v 0 0 0\nf 1 -2 1\n", PolygonFormat::obj),
-                HasSubstr("before the first; there are 1"));
-    EXPECT_THAT(complaint("t crease 1 2 3\n", PolygonFormat::obj), HasSubstr("2/1/0"));
-    EXPECT_THAT(complaint("hello\n", PolygonFormat::off), HasSubstr("it is no OFF file"));
-    EXPECT_THAT(complaint("OFF BINARY\n", PolygonFormat::off), HasSubstr("line 1: 'BINARY'"));
-    EXPECT_THAT(complaint("OFF\n3 1 0\n0 0 0\n", PolygonFormat::off),
-                HasSubstr("ends where a vertex was expected"));
-    EXPECT_THAT(complaint("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", PolygonFormat::off),
-                HasSubstr("'-1' is not a vertex"));
-    EXPECT_THAT(complaint("solid x\n", PolygonFormat::ply), HasSubstr("does not start with 'ply'"));
-    EXPECT_THAT(complaint("ply\nformat text 1\nend_header\n", PolygonFormat::ply),
-                HasSubstr("line 2: format 'text'"));
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(complaint("v 0 0 0\nv 1 0 x\n", MeshFormat::obj), "m: line 2: 'x' is not a number");
+    EXPECT_THAT(complaint("v 0 0\n", MeshFormat::obj), HasSubstr("line 1: a point needs three coordinates"));
+    EXPECT_THAT(complaint("v 0 0 0\nf 1 0 2\n", MeshFormat::obj),
+                HasSubstr("line 2: a face refers to point 0"));
+    EXPECT_THAT(complaint("v 0 0 0\nf 1 -2 1\n", MeshFormat::obj),
+                HasSubstr("a face refers to point -2, but only 1 points come before"));
+    EXPECT_THAT(complaint(triangle + "t crease 1 2 3\n", MeshFormat::obj),
+                HasSubstr("line 5: 't crease 1' does not count its values as 2/1/0"));
+    EXPECT_THAT(complaint(triangle + "t corner 1/1/0 1\n", MeshFormat::obj),
+                HasSubstr("line 5: ends where a sharpness was expected"));
+    EXPECT_THAT(complaint("hello\n", MeshFormat::off), HasSubstr("line 1: an OFF file starts with 'OFF'"));
+    EXPECT_THAT(complaint("OFF BINARY\n", MeshFormat::off), HasSubstr("binary OFF is not read"));
+    EXPECT_THAT(complaint("OFF\n3 1 0\n0 0 0\n", MeshFormat::off),
+                HasSubstr("promises 3 points but the file ends after 1"));
+    EXPECT_THAT(complaint("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", MeshFormat::off),
+                HasSubstr("line 4: a face refers to point '-1'"));
+    EXPECT_THAT(complaint("solid x\n", MeshFormat::ply), HasSubstr("no PLY"));
+    EXPECT_THAT(complaint("ply\nformat text 1\nend_header\n", MeshFormat::ply),
+                HasSubstr("unknown format 'text'"));
     EXPECT_THAT(complaint("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",
-                          PolygonFormat::ply),
-                HasSubstr("no x, y, z"));
+                          MeshFormat::ply),
+                HasSubstr("lack x, y or z"));
 }
 
 // Every truncation is refused, or (a text that ends between two lines, or within its last number) still a mesh.
@@ -224,7 +229,7 @@ TEST(MeshFiles, SurviveEveryTruncation) {
             if (!complaint(std::string(part.data(), part.size()), format).empty()) ++refused;
         }
         EXPECT_GE(refused + 12, bytes.size());
-        if (format == PolygonFormat::ply) {
+        if (format == MeshFormat::ply) {
             EXPECT_EQ(refused, bytes.size());
         }
     }

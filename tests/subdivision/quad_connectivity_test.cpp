@@ -8,6 +8,7 @@
 #include "subdivision/meshes/catmull_clark.h"
 #include "subdivision/meshes/hierarchy.h"
 #include "tests/subdivision/mesh_zoo.h"
+#include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -18,12 +19,7 @@ using testing::HasSubstr;
 const MeshScheme& scheme() { return meshScheme("catmull-clark"); }
 
 std::string complaint(const PolygonMesh& mesh, int levels = 1) {
-    try {
-        recoverQuads(mesh, levels, {});
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return subdivision::complaint([&] { recoverQuads(mesh, levels, {}); });
 }
 
 // Faces as sets of points, so that meshes in different orders compare.

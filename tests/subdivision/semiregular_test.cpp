@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "bench/lifting.h"
 #include "subdivision/meshes/hierarchy.h"
@@ -16,17 +15,11 @@ PolygonMesh part(const char* name) {
     return readPolygonMesh(std::string(ISOWAVE_TEST_DATA) + "/meshes/" + name);
 }
 
-double rms(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    double squares = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) squares += dot(a[k] - b[k], a[k] - b[k]);
-    return std::sqrt(squares / double(a.size()));
-}
-
 // The mesh with `levels` levels of details left out.
 double errorWithout(const PolygonMesh& mesh, const char* scheme, const char* variant, int levels) {
     Hierarchy hierarchy = decompose(mesh, meshScheme(scheme), variant, levels);
     for (auto& details : hierarchy.details) std::fill(details.begin(), details.end(), Vec3{});
-    return rms(reconstruct(hierarchy).points, mesh.points) / diagonal(mesh.points);
+    return pointError(reconstruct(hierarchy).points, mesh.points).rms / diagonal(mesh.points);
 }
 
 void expectThatItComesBack(const PolygonMesh& mesh, const char* scheme, int levels, std::size_t baseFaces) {
@@ -35,7 +28,7 @@ void expectThatItComesBack(const PolygonMesh& mesh, const char* scheme, int leve
     EXPECT_EQ(hierarchy.base.faceCount(), baseFaces) << scheme;
     const PolygonMesh again = reconstruct(hierarchy);
     EXPECT_EQ(again.corners, mesh.corners) << scheme;
-    EXPECT_LT(rms(again.points, mesh.points), 1e-14 * diagonal(mesh.points)) << scheme;
+    EXPECT_LT(pointError(again.points, mesh.points).rms, 1e-14 * diagonal(mesh.points)) << scheme;
 }
 
 TEST(Semiregular, TrianglesOfARealPartComeBack) {
@@ -69,7 +62,7 @@ double errorOfLifting(const PolygonMesh& mesh, int levels) {
     PolygonMesh at = hierarchy.base;
     for (int k = 0; k < levels; ++k) {
         steps.emplace_back(at);
-        at = scheme.step(at, "")->refined();
+        at = scheme.step(at, "")->fineMesh();
     }
     auto points = finest;
     for (std::size_t k = steps.size(); k-- > 0;) {
@@ -80,7 +73,7 @@ double errorOfLifting(const PolygonMesh& mesh, int levels) {
         points.resize(step.fineSize());
         step.together(points);
     }
-    return rms(points, finest) / diagonal(finest);
+    return pointError(points, finest).rms / diagonal(finest);
 }
 
 TEST(Semiregular, WideRowsBeatLiftingOnARealPart) {

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <random>
 
+#include "subdivision/filters/masks.h"
+#include "tests/subdivision/numbers.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
 namespace {
 
 using testing::HasSubstr;
-
-Rational q(const char* text) { return parseRational(text); }
 
 // The nodes of a patch in spiral order around one of them, missing ones skipped.
 std::vector<Node> clippedSpiral(const Patch& patch, Node centre, int width) {
@@ -44,22 +44,7 @@ SurfaceField noise(const Patch& patch, int channels, unsigned seed) {
     return field;
 }
 
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double v : values) most = std::max(most, std::abs(v));
-    return most;
-}
-
-double largestDifference(const std::vector<double>& a, const std::vector<double>& b) {
-    EXPECT_EQ(a.size(), b.size());
-    double most = 0;
-    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
-        most = std::max(most, std::abs(a[k] - b[k]));
-    return most;
-}
-
-// --- patches
-// ------------------------------------------------------------------------------------------------
+// ---- patches ----
 
 TEST(Patch, CountsItsNodes) {
     EXPECT_EQ(Patch::parallelogram(3, 2).size(), 12u);
@@ -70,8 +55,9 @@ TEST(Patch, CountsItsNodes) {
         const auto nodes = patch.nodes();
         ASSERT_EQ(nodes.size(), patch.size()) << patch.name();
         for (std::size_t k = 0; k < nodes.size(); ++k) ASSERT_EQ(patch.index(nodes[k]), k) << patch.name();
-        EXPECT_EQ(patch.refined().coarsened(), patch);
-        EXPECT_EQ(patch.refined().edgeNodes().size(), patch.refined().size() - patch.size()) << patch.name();
+        EXPECT_EQ(patch.subdivided().coarsened(), patch);
+        EXPECT_EQ(patch.subdivided().edgeNodes().size(), patch.subdivided().size() - patch.size())
+            << patch.name();
     }
 }
 
@@ -86,8 +72,7 @@ TEST(Patch, KnowsSidesAndCorners) {
     EXPECT_EQ(count, (std::map<int, int>{{0, 19}, {1, 12}, {2, 6}}));
 }
 
-// --- Butterfly beside a side, exactly
-// -----------------------------------------------------------------------
+// ---- Butterfly beside a side, exactly ----
 
 const Patch kWide = Patch::parallelogram(20, 20);  // far from corners: nodes (10, 0), (10, 1) ..
 
@@ -108,7 +93,7 @@ TEST(ButterflySide, EveryRowOfPKeepsLinearFunctions) {
     for (const char* name : {"butterfly-3", "loop-1"}) {
         for (const Patch& patch : smallPatches()) {
             if (patch.isTorus()) continue;
-            for (const Node fine : patch.refined().nodes()) {
+            for (const Node fine : patch.subdivided().nodes()) {
                 Rational x = 0, y = 0, one = 0;
                 for (const auto& [node, weight] : surfaceRowOfP(surfaceScheme(name), patch, fine)) {
                     ASSERT_TRUE(patch.contains(node)) << patch.name();
@@ -145,7 +130,7 @@ const std::vector<const char*> kPrinted = {
 
 TEST(ButterflySide, TheRowOfAOneLevelInIsThePrintedOneButForOneSign) {
     const Diagram row = surfaceRowOfA(surfaceScheme("butterfly-3"), kWide, {10, 1});
-    const auto nodes = clippedSpiral(kWide.refined(), {20, 2}, 3);
+    const auto nodes = clippedSpiral(kWide.subdivided(), {20, 2}, 3);
     ASSERT_EQ(nodes.size(), 33u);
     EXPECT_EQ(row.size(), 33u);
     Rational printedSum = 0;
@@ -180,7 +165,7 @@ TEST(ButterflySide, TwoLevelsInIsStillSpecialThreeIsNot) {
 TEST(ButterflySide, MirroredWingsGiveOtherFilters) {
     const SurfaceScheme scheme = surfaceScheme("butterfly-3");
     const auto centreOf = [&](Node node, bool mirrored) {
-        const auto window = clippedSpiral(kWide.refined(), 2 * node, 3);
+        const auto window = clippedSpiral(kWide.subdivided(), 2 * node, 3);
         FiniteSubdivision p;
         for (const Node fine : window) {
             Diagram row = surfaceRowOfP(scheme, kWide, fine);
@@ -211,7 +196,7 @@ TEST(ButterflySide, MirroredWingsGiveOtherFilters) {
 TEST(ButterflySide, SideValuesDependOnTheSideAlone) {
     const SurfaceScheme scheme = surfaceScheme("butterfly-3");
     for (const Patch& patch : {Patch::parallelogram(4, 4), Patch::triangle(5), Patch::hexagon(3)}) {
-        const Patch fine = patch.refined();
+        const Patch fine = patch.subdivided();
         const auto onSide = [](const Patch& p, Node n) {
             const auto d = p.distances(n);
             return std::count(d.begin(), d.end(), 0) > 0;
@@ -229,8 +214,7 @@ TEST(ButterflySide, SideValuesDependOnTheSideAlone) {
     }
 }
 
-// --- everything, exactly
-// ------------------------------------------------------------------------------------
+// ---- everything, exactly ----
 
 TEST(SurfaceSystems, HoldExactlyOnToriAndPatches) {
     for (const char* name : {"butterfly-trivial", "butterfly-3", "butterfly-4", "loop-1", "loop-2", "loop-3",
@@ -238,7 +222,7 @@ TEST(SurfaceSystems, HoldExactlyOnToriAndPatches) {
         const SurfaceScheme scheme = surfaceScheme(name);
         for (const Patch& patch : smallPatches()) {
             const System system = surfaceSystem(scheme, patch);  // throws when the proof fails
-            EXPECT_EQ(system.a.size() + system.b.size(), patch.refined().size()) << name << patch.name();
+            EXPECT_EQ(system.a.size() + system.b.size(), patch.subdivided().size()) << name << patch.name();
         }
     }
 }
@@ -246,16 +230,15 @@ TEST(SurfaceSystems, HoldExactlyOnToriAndPatches) {
 TEST(SurfaceSystems, ProofFailsWhenOneValueIsWrong) {
     const Patch patch = Patch::hexagon(2);
     const System right = surfaceSystem(surfaceScheme("butterfly-3"), patch);
-    ASSERT_TRUE(prove(right, patch.refined().size()));
+    ASSERT_TRUE(prove(right, patch.subdivided().size()));
     for (std::size_t k = 0; k < right.a.size(); ++k) {
         System wrong = right;
         wrong.a[k].add(wrong.a[k].begin()->first, q("1/1000000000000"));
-        EXPECT_FALSE(prove(wrong, patch.refined().size())) << k;
+        EXPECT_FALSE(prove(wrong, patch.subdivided().size())) << k;
     }
 }
 
-// --- doubles
-// ------------------------------------------------------------------------------------------------
+// ---- doubles ----
 
 // The fast paths (runs along rows, shared stencils, lifting instead of Q) against the exact diagrams.
 TEST(SurfaceFilters, DoTheExactMapsOnEveryPatch) {
@@ -265,7 +248,7 @@ TEST(SurfaceFilters, DoTheExactMapsOnEveryPatch) {
         patches.push_back(Patch::parallelogram(7, 9));
         for (const Patch& patch : patches) {
             const System exact = surfaceSystem(surfaceScheme(name), patch);
-            const Patch fine = patch.refined();
+            const Patch fine = patch.subdivided();
             const SurfaceField field = noise(fine, 1, 17);
             const SurfaceLevels levels = decompose(field, filters, 1);
             const auto applied = [&](const Diagram& row) {
@@ -298,9 +281,9 @@ TEST(SurfaceFilters, DoTheExactMapsOnEveryPatch) {
 TEST(SurfaceFilters, SharePlacesThatSeeTheSameSides) {
     SurfaceFilters filters(surfaceScheme("butterfly-3"));
     decompose(noise(Patch::parallelogram(64, 64), 1, 1), filters, 1);
-    const std::size_t kinds = filters.kinds();
+    const std::size_t kinds = filters.stencilCount();
     decompose(noise(Patch::parallelogram(96, 128), 1, 1), filters, 2);
-    EXPECT_EQ(filters.kinds(), kinds) << "a larger patch has no place that the smaller one has not";
+    EXPECT_EQ(filters.stencilCount(), kinds) << "a larger patch has no place that the smaller one has not";
     // And a shared stencil is the right one: two nodes far apart along a side.
     const Patch patch = Patch::parallelogram(96, 128);
     for (const Node n : {Node{40, 1}, Node{41, 1}, Node{60, 0}, Node{95, 60}, Node{96, 61}, Node{2, 100}}) {
@@ -370,8 +353,7 @@ TEST(SurfaceLevels, OfALinearFieldAreItsSamples) {
     }
 }
 
-// --- bad input
-// ----------------------------------------------------------------------------------------------
+// ---- bad input ----
 
 TEST(BadSurface, IsRefusedInOneLine) {
     SurfaceFilters filters(surfaceScheme("butterfly-3")), other(surfaceScheme("loop-1"));

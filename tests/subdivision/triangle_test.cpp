@@ -14,10 +14,12 @@
 #include "isowave/error.h"
 #include "subdivision/filters/construct.h"
 #include "subdivision/filters/exact_solve.h"
-#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/filters/masks.h"
 #include "subdivision/lattice/surface.h"
+#include "subdivision/meshes/hierarchy.h"
 #include "subdivision/meshes/triangle_coarsen.h"
 #include "subdivision/meshes/triangle_step.h"
+#include "tests/subdivision/mesh_zoo.h"
 #include "tests/subdivision/refusal.h"
 
 namespace isowave::subdivision {
@@ -27,8 +29,7 @@ using testing::HasSubstr;
 using Family = TriangleStep::Family;
 using Fit = TriangleStep::Fit;
 
-// --- shapes
-// ------------------------------------------------------------------------------------------------------
+// ---- shapes ----
 
 struct Shape {
     std::string name;
@@ -166,13 +167,7 @@ PolygonMesh fan(Index n) {
     return mesh;
 }
 
-PolygonMesh both(PolygonMesh a, const PolygonMesh& b) {
-    const Index first = static_cast<Index>(a.vertexCount());
-    for (const Vec3& p : b.points) a.points.push_back(p + Vec3{10, 0, 0});
-    for (std::size_t f = 0; f < b.faceCount(); ++f)
-        a.addFace({b.face(f)[0] + first, b.face(f)[1] + first, b.face(f)[2] + first});
-    return a;
-}
+PolygonMesh both(const PolygonMesh& a, const PolygonMesh& b) { return mesh_zoo::together(a, b, {10, 0, 0}); }
 
 std::vector<Shape> closedShapes() {
     return {{"tetrahedron", tetrahedron()},
@@ -209,7 +204,7 @@ std::vector<Shape> allShapes() {
 // Each vertex at twice a coarse vertex's place, or at the sum of an edge's ends: places tell which is which.
 PolygonMesh doubled(const PolygonMesh& coarse) {
     const Adjacency adjacency(coarse);
-    PolygonMesh fine = refinedTriangles(adjacency);
+    PolygonMesh fine = fineTriangles(adjacency);
     for (Index v = 0; v < coarse.vertexCount(); ++v) fine.points[v] = 2 * coarse.points[v];
     for (Index e = 0; e < adjacency.edges(); ++e) {
         const Index h = adjacency.edgeCorner(e);
@@ -284,13 +279,12 @@ std::map<Index, double> gathered(const Taps& row) {
     return result;
 }
 
-// --- finding the coarse mesh
-// -------------------------------------------------------------------------------------
+// ---- finding the coarse mesh ----
 
 // (1) of coarsenedTriangles: fineCorner says where each coarse corner's fine triangle lies.
 void expectThatCornersAgree(const PolygonMesh& fine, const Coarsening& found, const std::string& name) {
     const Adjacency coarse(found.coarse);
-    const PolygonMesh again = refinedTriangles(coarse);
+    const PolygonMesh again = fineTriangles(coarse);
     ASSERT_EQ(again.faceCount(), fine.faceCount()) << name;
     std::vector<Index> vertexOf(again.vertexCount(), kNone);
     const Adjacency adjacency(fine);
@@ -414,8 +408,7 @@ TEST(TriangleCoarsening, RefusesOtherFacesCreasesAndMisplacedPins) {
     EXPECT_THAT(complaint([&] { coarsenedTriangles(pinned); }), HasSubstr("vertex 5 is pinned"));
 }
 
-// --- P, A, B, Q
-// ---------------------------------------------------------------------------------------------------
+// ---- P, A, B, Q ----
 
 // The fine vertex of TriangleStep that a node of the refined patch is.
 Index vertexOfNode(const Patch& coarse, const Adjacency& adjacency, Node fine) {
@@ -441,7 +434,7 @@ void expectSame(const std::map<Index, double>& row, const std::map<Index, double
 
 // surface.h has the same schemes on lattices, exactly; a triangle's three corners are corners here too.
 TEST(TriangleStep, AgreesWithTheExactRowsOnALattice) {
-    const Patch patch = Patch::triangle(9), fine = patch.refined();
+    const Patch patch = Patch::triangle(9), fine = patch.subdivided();
     const PolygonMesh mesh = ofPatch(patch);
     const Adjacency adjacency(mesh);
     for (const auto& [family, fit, name] : {std::tuple(Family::Butterfly, Fit::Refined, "butterfly-3"),
@@ -742,7 +735,7 @@ TEST(TriangleStep, PinnedVerticesStay) {
     const auto points = noise(step.coarseSize(), 1);
     const auto fine = step.subdivide(points);
     for (const Index v : mesh.pinned) EXPECT_EQ(fine[v], points[v]);
-    EXPECT_EQ(step.refined().pinned, mesh.pinned);
+    EXPECT_EQ(step.fineMesh().pinned, mesh.pinned);
     const auto parts = step.decompose(fine);
     EXPECT_LT(largestDifference(parts.coarse, points), 1e-13 * largest(points));
     EXPECT_LT(largest(parts.stored), 1e-13 * largest(points));

@@ -1,4 +1,4 @@
-#include "subdivision/filters/finite.h"
+#include "subdivision/filters/finite_subdivision.h"
 
 #include <cassert>
 #include <set>

@@ -1,4 +1,4 @@
-// Images -> what is inside. PNG, TIFF and BMP through ITK; PGM and PBM here, ITK does not know them.
+// Grey values of an image -> what is inside: the shape that a field is fitted to.
 #pragma once
 
 #include <filesystem>
@@ -25,9 +25,8 @@ struct ValueRange {
 };
 ValueRange valueRange(const Bitmap& bitmap);
 
-// Grey values as stored. Colours as luminance (Rec. 601: 0.299 R + 0.587 G + 0.114 B), transparent pixels
-// laid on white. PBM: black 0, white 255. Throws InputError: not an image, truncated, zero size, several
-// pages, NaN.
+// PNG, TIFF, BMP, PGM and PBM, by their first bytes: grey values as stored, colours and opacity as luminance() of
+// io/picture has them. Throws InputError: not an image, truncated, zero size, several pages, NaN.
 Bitmap readBitmap(const std::filesystem::path& path);
 
 // Inside is where the value exceeds `iso` (with `invert`: where it does not). What touches the border of the

@@ -1,0 +1,142 @@
+#include "isowave/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "curves2d/bitmap_shape.h"
+#include "curves2d/fit.h"
+#include "curves2d/ladder.h"
+#include "curves2d/polygon_input.h"
+#include "curves2d/raster.h"
+#include "isowave/error.h"
+
+namespace isowave::curves2d {
+namespace {
+
+constexpr double kSmoothTolerance = 0.1;  // pixels
+constexpr double kSheetTolerance = 1e-3;  // of the picture's longer side
+
+Input inputOf(const Bitmap& bitmap, const InputOptions& options, const std::string& name) {
+    Input input;
+    const ValueRange range = valueRange(bitmap);
+    const double middle = 0.5 * (static_cast<double>(range.low) + static_cast<double>(range.high));
+    if (range.low == range.high && !options.iso)
+        throw InputError(name, fmt::format("every pixel is {}: there is no crossing to draw; --iso makes "
+                                           "all of it inside or outside",
+                                           range.low));
+    if (!options.iso && !range.twoValues)
+        input.remarks.push_back(
+            fmt::format("--iso {:g}: the middle of the values {:g} .. {:g}", middle, range.low, range.high));
+    input.shape =
+        std::make_shared<const Shape>(shapeOf(bitmap, options.iso.value_or(middle), options.invert, name));
+    input.extent.take(Point{-0.5, -0.5});
+    input.extent.take(Point{bitmap.width - 0.5, bitmap.height - 0.5});
+    input.fit = range.twoValues ? Fit::binary : Fit::distance;
+    input.kind = fmt::format("image {} x {}", bitmap.width, bitmap.height);
+    return input;
+}
+
+Shape shapeOfPolygons(const std::vector<Polygon>& polygons, const InputOptions& options,
+                      const Progress& progress, const std::string& name) {
+    Shape shape;
+    try {
+        shape.frame = frameAround(polygons, options.pixels);
+        shape.inside = rasterise(polygons, shape.frame, progress);
+    } catch (const InputError& error) {
+        throw InputError(name, error.what());
+    }
+    if (shape.inside.empty())
+        throw InputError(name, fmt::format("no pixel's middle lies in a polygon at --pixels {}; take more",
+                                           options.pixels));
+    shape.boundary = boundary(polygons, shape.frame);
+    return shape;
+}
+
+}  // namespace
+
+Input pictureInput(std::int32_t width, std::int32_t height, std::vector<float> values,
+                   const InputOptions& options, const std::string& name) {
+    if (width < 1 || height < 1 ||
+        values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
+        throw InputError(
+            name, fmt::format("{} values are no picture of {} x {} pixels", values.size(), width, height));
+    return inputOf(Bitmap{width, height, std::move(values)}, options, name);
+}
+
+Input polygonInput(const std::vector<Polygon>& polygons, const InputOptions& options,
+                   const Progress& progress, const std::string& name) {
+    Input input;
+    std::size_t rings = 0, points = 0;
+    for (const Polygon& polygon : polygons) {
+        rings += polygon.rings.size();
+        for (const Ring& ring : polygon.rings) {
+            points += ring.size();
+            for (const Point& p : ring) input.extent.take(p);
+        }
+    }
+    auto shape = std::make_shared<const Shape>(shapeOfPolygons(polygons, options, progress, name));
+    input.yUp = true;
+    input.pixel = shape->frame.spacing.x;
+    input.shape = std::move(shape);
+    input.kind = fmt::format("{} polygons of {} rings, {} points", polygons.size(), rings, points);
+    return input;
+}
+
+Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
+    progress("reading", 0);
+    if (!std::filesystem::exists(path)) throw InputError(path.string(), "there is no such file");
+    if (!looksLikePolygons(path)) return inputOf(readBitmap(path), options, path.string());
+    const PolygonInput polygons = readPolygons(path);
+    Input input = polygonInput(polygons.polygons, options, progress, path.string());
+    input.remarks = polygons.remarks;
+    return input;
+}
+
+DrawnCurves LadderStep::drawn(const DrawOptions& options) const {
+    if (options.smooth)
+        return {curves_, smoothed(field_, curves_, options.tolerance.value_or(kSmoothTolerance) * pixel_)};
+    if (options.tolerance) return {refined(field_, curves_, *options.tolerance * pixel_), std::nullopt};
+    return {curves_, std::nullopt};
+}
+
+Panel LadderStep::panel(const View& view) const {
+    const Point size = view.extent.high - view.extent.low;
+    return {name(), refined(field_, curves_, kSheetTolerance * std::max(size.x, size.y))};
+}
+
+Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor& visit,
+                  const Progress& progress) {
+    DistanceFitOptions distance;
+    distance.halfWidth = options.halfWidth;
+    distance.band = options.band.value_or(std::min(distance.band, options.halfWidth));
+    assert(0 < distance.band && distance.band <= distance.halfWidth);
+    const Fit method = options.fit.value_or(input.fit);
+    FitReport report;
+    RowField<float> field = fit(*input.shape, method, distance, &report, progress);
+    input.shape.reset();  // as large as the field
+
+    const auto onStep = [&](const StepFacts& facts, const RowField<float>& f, const Curves& curves) {
+        if (visit && facts.step >= options.firstStep) visit(LadderStep(facts, curves, f, input.pixel));
+    };
+    Ladder ladder = traceSteps(std::move(field), options.lastStep, onStep, progress);
+    ladder.fit = method;
+    ladder.halfWidth = distance.halfWidth;
+    ladder.band = distance.band;
+    ladder.fitReport = report;
+    return ladder;
+}
+
+std::vector<LevelCurves> levelCurves(Input input, const LadderOptions& options, const DrawOptions& draw,
+                                     const Progress& progress) {
+    std::vector<LevelCurves> levels;
+    const auto keep = [&](const LadderStep& step) {
+        if (step.level()) levels.push_back({step.facts(), step.drawn(draw)});
+    };
+    makeLadder(std::move(input), options, keep, progress);
+    return levels;
+}
+
+}  // namespace isowave::curves2d
