@@ -17,18 +17,30 @@
 #include <vector>
 
 #include "isowave/progress.h"
-#include "volume/vdb.h"
+#include "isowave/version.h"
 
 namespace isowave {
+
+// Voxel (i,j,k), fractions too, lies at origin + i axis[0] + j axis[1] + k axis[2], in world units.
+struct AffineTransform {
+    std::array<std::array<double, 3>, 3> axis{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::array<double, 3> origin{};
+
+    std::array<double, 3> operator()(const std::array<double, 3>& index) const {
+        std::array<double, 3> world = origin;
+        for (int a = 0; a < 3; ++a)
+            for (int row = 0; row < 3; ++row) world[row] += index[a] * axis[a][row];
+        return world;
+    }
+    friend bool operator==(const AffineTransform&, const AffineTransform&) = default;
+};
 
 // x is fastest: voxel (x,y,z) is values[x + size[0]*(y + size[1]*z)]; index 0 is the first stored voxel
 // whatever extent the file was cropped from.
 struct Image {
     std::array<std::int64_t, 3> size{};
     std::vector<float> values;
-    // Row vectors: world = (i,j,k,1) * M. Row a is spacing[a] times the direction of axis a; row 3 the
-    // origin.
-    openvdb::math::Mat4d indexToWorld = openvdb::math::Mat4d::identity();
+    AffineTransform indexToWorld;       // axis[a]: spacing[a] times the direction of axis a
     std::string componentType;          // as stored: "int16", "uint8", "float32", ...
     bool integral = false;              // componentType is an integer type
     double slope = 1, intercept = 0;    // values = slope * stored + intercept (NIfTI's scl_slope, scl_inter)
@@ -36,14 +48,14 @@ struct Image {
     std::vector<std::string> warnings;  // one line each: "no z spacing in TIFF; 1 x 1 x 1 mm is assumed; ..."
 
     std::int64_t voxelCount() const { return size[0] * size[1] * size[2]; }
-    // Lengths of the three rows of indexToWorld, in mm.
-    std::array<double, 3> spacing() const;
+    // Lengths of the three axes of indexToWorld, in mm.
+    ISOWAVE_EXPORT std::array<double, 3> spacing() const;
 };
 
 // What a headerless file lacks.
 struct RawLayout {
     std::array<std::int64_t, 3> size{};  // voxels, x fastest
-    std::string type;                    // int8 uint8 int16 uint16 int32 uint32 float32 float64
+    std::string type = {};               // int8 uint8 int16 uint16 int32 uint32 float32 float64
     bool bigEndian = false;
     std::int64_t headerBytes = 0;  // skipped at the start of the file
 };
@@ -51,11 +63,11 @@ struct RawLayout {
 struct ImageReadOptions {
     // mm. For formats that hold none (raw, TIFF, PNG) it is the spacing; elsewhere it replaces the header's,
     // with a warning when the two differ by more than 0.1 %.
-    std::optional<std::array<double, 3>> spacing;
+    std::optional<std::array<double, 3>> spacing = {};
     // Given: the file is headerless, whatever its name ends in.
-    std::optional<RawLayout> raw;
+    std::optional<RawLayout> raw = {};
     // Which series of a DICOM folder: any unique part of its UID or of its description.
-    std::optional<std::string> series;
+    std::optional<std::string> series = {};
     // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
     // machine has. A header that asks for more is refused before anything is allocated.
     std::int64_t memoryLimit = 0;
@@ -66,17 +78,17 @@ struct ImageReadOptions {
 // or truncated file, a 2D image, a time series, RGB or vector voxels, NaN or infinite voxels (says where),
 // spacing <= 0, a direction matrix that cannot be inverted, a folder with several series (lists them), a size
 // that memory cannot hold. Throws Cancelled when progress says so.
-Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
-                const Progress& progress = {});
+ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
+                               const Progress& progress = {});
 
 // Header only: everything but `values`. Truncation is found where file sizes show it.
-Image readImageHeader(const std::filesystem::path& path, const ImageReadOptions& options = {});
+ISOWAVE_EXPORT Image readImageHeader(const std::filesystem::path& path, const ImageReadOptions& options = {});
 
 // The files beside an NRRD or MetaImage header that hold its voxels: one, a list, or what a pattern with a number
 // fits. Nothing when the voxels are in the file itself, for other formats, and for a header that cannot be read.
-std::vector<std::filesystem::path> voxelFilesOf(const std::filesystem::path& path);
+ISOWAVE_EXPORT std::vector<std::filesystem::path> voxelFilesOf(const std::filesystem::path& path);
 
 // Whether a path looks like something readImage() reads (by extension, or a folder).
-bool isImagePath(const std::filesystem::path& path);
+ISOWAVE_EXPORT bool isImagePath(const std::filesystem::path& path);
 
 }  // namespace isowave

@@ -1,0 +1,212 @@
+// A solid in, a ladder of meshes out: one closed mesh a level, each with a report of what it has kept and lost.
+//
+//   Ladder ladder = makeLadder(open("part.stl"), {.levels = StepRange{0, 3}});
+//   for (const Level& level : ladder.levels)
+//       std::cout << level.report.topology.triangles << " triangles, genus " << level.report.topology.genus << '\n';
+//
+// With a visitor no mesh is kept; each is handed on as it passes by, so that one field and one mesh are in memory at a
+// time, level 0's triangles beside them:
+//
+//   makeLadder(open("part.stl"), {}, {.level = [](const LevelReport& report, const TriangleMesh& mesh) { ... }});
+//
+// Step s is the solid after s directions have been halved (axes in turn x, y, z); level l is step 3 l.
+//
+//   each step:  field -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
+//               -> count -> measure against level 0
+//
+// Distances to level 0, budgets and `compact` need the parts of isowave that CGAL's GPL packages are in (canMeasureDistances
+// in isowave/measure.h). Without them distances are empty and the others a UsageError.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isowave/measure.h"
+#include "isowave/mesh.h"
+#include "isowave/progress.h"
+#include "isowave/pyramid.h"
+#include "isowave/solid.h"
+#include "isowave/version.h"
+
+namespace isowave {
+
+// ---- what is asked for
+
+// first..last, both included; without last: as far as the pyramid goes.
+struct StepRange {
+    int first = 0;
+    std::optional<int> last = {};
+};
+
+// Names in messages are those of the command's options.
+struct LevelOptions {
+    std::optional<StepRange> levels = {}, steps = {};  // one of the two; neither: all levels
+    int refine = 1;                                    // samples of a node along each axis: 1, 2 or 4
+    bool compact = false;         // collapse what refine > 1 gives down to the triangles of refine = 1
+    bool refit = false;           // fit the field of a level once more to level 0's surface
+    bool preserveVolume = false;  // choose the iso-value at which a level has the volume of level 0
+    bool protectThin = false;     // choose the iso-value at which a level keeps what is thin; or refine more
+    bool keepSpecks = false;      // components smaller than a node stay
+    bool features = false;        // measure parts, holes and cavities of level 0 and tell what became of them
+    int relax = 0;                // rounds of sliding vertices along the surface
+    bool deviation = false;       // measure triangles against the zero set
+};
+
+// Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
+struct BudgetOptions {
+    std::vector<std::int64_t> triangles = {};  // one mesh each: at most so many triangles
+    std::vector<double> ratios = {};           // one mesh each: at most this share of level 0's triangles
+    // One mesh each: nowhere farther than this from level 0, world units.
+    std::vector<double> tolerances = {};
+    // Of all of them; where only these are given there is one mesh, that of the finest step that they allow.
+    std::optional<std::int64_t> maxGenus = {};  // summed over components
+    // World units^3: every component, a cavity too, has at least that.
+    std::optional<double> minComponent = {};
+
+    bool any() const {
+        return !triangles.empty() || !ratios.empty() || !tolerances.empty() || maxGenus || minComponent;
+    }
+};
+
+// ---- what is told
+
+// Parts, handles and cavities of the solid that a mesh bounds; or how many there are more than before.
+struct SolidCounts {
+    std::int64_t parts = 0, handles = 0, cavities = 0;
+    friend bool operator==(const SolidCounts&, const SolidCounts&) = default;
+};
+ISOWAVE_EXPORT SolidCounts countsOf(const MeshTopology& topology);
+
+// What became of level 0's features of one kind.
+struct FeatureFate {
+    std::int64_t survived = 0, vanished = 0;
+    std::int64_t torn = 0;  // the ring or the wall has opened
+    std::int64_t more = 0;  // of the level, that none of level 0's accounts for
+    std::optional<double> smallestSurviving, largestVanished;  // radii, world units
+};
+struct FeatureReport {
+    double spacing = 0;  // of the lattice that features were looked for on, world units
+    double reach = 0;    // up to which radius, world units
+    FeatureFate parts, handles, cavities;
+};
+
+// What a finer lattice finds in the field of a level that has more parts, handles or cavities than the one before: what is
+// not there is an artefact of the mesh's sampling, the rest is the field's own.
+struct SamplingReport {
+    int refine = 2;
+    SolidCounts counts;
+    std::optional<double> thinKept;
+};
+
+struct LevelReport {
+    int step = 0;
+    std::optional<int> level;         // where step is 3 level
+    std::array<double, 3> spacing{};  // of the step's lattice, world units
+    std::int64_t controlPoints = 0, nodes = 0;
+    double leafOccupancy = 0;      // share of the stored lattice points that are control points, 0 to 1
+    std::int64_t memoryBytes = 0;  // of the field
+
+    MeshTopology topology;  // no triangles: the whole solid has vanished, and the ladder ends here
+    bool vanished() const { return topology.triangles == 0; }
+    int refine = 1;
+    std::int64_t specksRemoved = 0, bubblesRemoved = 0;  // components smaller than a node
+    double speckVolume = 0, bubbleVolume = 0;            // world units^3, both >= 0
+
+    double isoShift = 0;  // the iso-value, of K; above 0 the solid is thicker
+    std::optional<double>
+        isoDistance;  // by which that moved the surface, world units; empty at an open border
+    std::optional<double> volumeAtIso0;
+    std::optional<double> volumeError;               // volume / level 0's - 1
+    std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
+    std::optional<FeatureReport> features;
+
+    SolidCounts change;  // from the level before in the report, or from level 0
+    std::optional<SamplingReport> sampling;
+    // World units; from samples on the level, and on some of level 0's triangles. 0 for level 0 itself.
+    std::optional<double> rmsToLevel0, maxToLevel0, rmsFromLevel0, maxFromLevel0;
+    std::optional<double> maxDeviation, rmsDeviation;  // of triangles from the zero set, world units
+    double seconds = 0;
+};
+
+struct BudgetReport {
+    std::optional<std::int64_t> trianglesAsked;  // also of a ratio
+    std::optional<double> ratioAsked, toleranceAsked;
+    std::optional<std::int64_t> maxGenus;
+    std::optional<double> minComponent;
+    int step = 0;     // that the mesh was made of
+    std::string why;  // "smallest distance to level 0 of the steps tried: 0 (1.2), 6 (0.8)"
+    MeshTopology topology;
+    std::int64_t selfIntersections = 0;  // pairs of triangles
+    OneSidedDistance toLevel0, fromLevel0;
+    double seconds = 0;
+};
+
+struct Level {
+    LevelReport report;
+    TriangleMesh mesh;  // empty where a visitor was given
+};
+struct BudgetLevel {
+    BudgetReport report;
+    TriangleMesh mesh;  // empty where a visitor was given
+};
+
+struct Ladder {
+    InputReport input;
+    std::optional<FitSummary> fit;
+    double K = 1;
+    std::vector<Level> levels;  // finest first
+    std::vector<BudgetLevel>
+        budgets;    // triangles, ratios, tolerances, each in the order in which they were asked for
+    int steps = 0;  // that were reached
+    std::int64_t coefficientsStored = 0, controlPoints = 0;  // of the pyramid, kept or not; of step 0
+    // By stage, opening the solid included; what a visitor takes is the stage "write".
+    std::vector<StageSeconds> seconds;
+    double totalSeconds = 0;
+    std::int64_t peakMemoryBytes = 0;  // of the process so far
+    std::int64_t threads = 0;          // that TBB may use
+};
+
+// ---- making it
+
+// Called on the thread that makes the ladder, with a report that is complete but for the visitor's own seconds.
+struct LadderVisitor {
+    // Not for a level that has vanished.
+    std::function<void(const LevelReport&, const TriangleMesh&)> level = {};
+    std::function<void(const BudgetReport&, const TriangleMesh&)> budget = {};
+    // Once, between many small allocations and few large ones: a program whose allocator keeps what was freed may give it
+    // back here.
+    std::function<void()> beforeMeasuring = {};
+};
+
+// Throws UsageError for options that exclude each other, InputError where the solid has no surface or does not reach
+// the first level asked for, Cancelled.
+ISOWAVE_EXPORT Ladder makeLadder(Solid solid, const LevelOptions& options = {},
+                                 const LadderVisitor& visitor = {}, const Progress& progress = {});
+
+// The meshes of all steps are kept until the end, to choose from. Levels are made, too, where levels.levels or
+// levels.steps asks for them. Throws as makeLadder() does, InputError where a budget cannot be met, UsageError for a
+// solid with an open border.
+ISOWAVE_EXPORT Ladder makeBudget(Solid solid, const BudgetOptions& budgets, const LevelOptions& levels = {},
+                                 const LadderVisitor& visitor = {}, const Progress& progress = {});
+
+// The mesh of one step, as the ladder has it; levels and steps of the options have no say. report tells of the mesh
+// itself: nothing is compared with other levels. Throws InputError where the solid does not go so far.
+ISOWAVE_EXPORT Level makeLevel(Solid solid, int step, const LevelOptions& options = {},
+                               const Progress& progress = {});
+
+// The levels of a pyramid without meshes, until nothing is left: what `isowave info` tells.
+ISOWAVE_EXPORT std::vector<LevelReport> describeLevels(const Pyramid& pyramid,
+                                                       const LevelOptions& options = {},
+                                                       const Progress& progress = {});
+
+// Whether a level can only be made beside level 0: a pyramid's file must be read as a whole then.
+ISOWAVE_EXPORT bool needsLevel0(const LevelOptions& options);
+
+// Throws UsageError for options that exclude each other, before anything is read.
+ISOWAVE_EXPORT void checkRanges(const LevelOptions& options);
+
+}  // namespace isowave

@@ -1,0 +1,137 @@
+// A solid, from whatever holds one: an image, a mesh, a level set or a pyramid that was made before.
+//
+//   Solid head = open("cranium.nhdr", {.iso = 300});        // bone in a CT scan, in Hounsfield units
+//   Solid part = open("part.stl", {.voxels = 400});         // a closed mesh, 400 voxels along its longest axis
+//   Solid mine = open(mesh, {.voxel = 0.5});                // a mesh in memory, voxels of half a unit
+//
+//   image      -> what kind of image? (mask, labels, grey) -> iso and fit -> nodes or distances -> field
+//   mesh       -> closed (repaired) -> voxel size -> distances -> field
+//   level set  -> distances in voxels -> field
+//   pyramid    -> read
+// Every default that is taken goes to Progress::remark. What follows, levels and meshes, is in isowave/ladder.h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isowave/image.h"
+#include "isowave/mesh.h"
+#include "isowave/progress.h"
+#include "isowave/version.h"
+
+namespace isowave {
+
+// From samples to a field. binary: from inside and outside alone, for masks and labels. distance: from signed distances,
+// for everything else.
+enum class FitMethod { binary, distance };
+
+// Names in messages are those of the command's options.
+struct SolidOptions {
+    // ---- what is inside
+    // Images: inside where the value is above it (HU for CT); level sets: below, world units.
+    std::optional<double> iso = {};
+    std::optional<double> label = {};  // images: inside where the value is this one
+    bool invert = false;               // images, level sets: the other side
+    bool openBorder = false;           // images: meshes end open at the image's border instead of with a cap
+
+    // ---- how a mesh is sampled: one of the two; neither: 256 voxels
+    std::optional<std::int64_t> voxels = {};  // along the longest axis of the bounding box
+    std::optional<double> voxel = {};         // edge, world units
+
+    // ---- how a file is read
+    ImageReadOptions image = {};           // its memoryLimit is set from maxMemory
+    std::optional<std::string> grid = {};  // of a .vdb with several level sets
+    int finestStep = 0;  // of a pyramid's file only what this step and coarser ones need is read
+
+    // ---- the fit
+    std::optional<FitMethod> fit = {};     // default: binary for masks and labels, distance else
+    std::optional<double> halfWidth = {};  // voxels each side in which distances are known; default 4
+    // Voxels each side that the field is kept for, at most halfWidth; default 2.
+    std::optional<double> band = {};
+
+    // Bytes that the job may take; default: 70 % of the computer's (or of the container's) memory.
+    std::optional<double> maxMemory = {};
+};
+
+// What was read, and what was decided about it. What a kind of input does not have is empty.
+struct InputReport {
+    enum class Kind { mask, labels, greyImage, mesh, levelSet, pyramid };
+
+    std::string path;  // of what came from memory: "image", "mesh", "level set"
+    Kind kind = Kind::mesh;
+    std::string format;         // "NRRD", "binary STL", ...; empty for level sets and pyramids
+    std::string componentType;  // of an image's voxels as stored: "int16"
+    std::string grid;           // the level set's name in its .vdb
+    std::optional<std::array<std::int64_t, 3>> dimensions;  // voxels
+    std::optional<std::array<double, 3>> spacing;           // of voxels, world units (mm for images)
+    std::optional<std::array<double, 2>> range;             // least and greatest value of an image
+    std::optional<double> iso, label;
+    std::optional<bool> inverted, openBorder;
+    std::optional<std::array<double, 3>> origin;  // world position of voxel (0,0,0), LPS
+    std::optional<std::array<std::array<double, 3>, 3>>
+        direction;                          // unit vectors along the lattice's axes, LPS
+    std::optional<std::int64_t> triangles;  // of a mesh, as read
+    std::vector<std::string> repairNotes;   // what was mended in it, a line each
+    std::optional<Space> space;             // axes that meshes of the solid have
+
+    // Of a pyramid: what its file says about the solid that it was made of, "input.path" -> "\"part.stl\"", values as
+    // JSON; and the same with types, as far as it is understood.
+    std::map<std::string, std::string> source;
+    std::shared_ptr<const InputReport> madeFrom;
+};
+
+// How the field was fitted, and how far it agrees with the input.
+struct FitSummary {
+    FitMethod method = FitMethod::distance;
+    double halfWidth = 0, band = 0;  // voxels each side; distance fit
+    int filterPasses = 0;            // of the Laplacian; binary fit
+    std::int64_t latticePoints = 0;  // whose sign was compared with the input's
+    std::int64_t disagreeing = 0;    // of these, in the end
+    int repairPasses = 0;            // that changed something
+    std::int64_t repaired = 0;       // control points changed, counted once a pass
+    double repairFloor = 0;          // of K: what F times the sign has to reach for the repair to be content
+    bool repairAgreed = true;        // it ended there, not at its limit of passes
+};
+
+// A solid as a B-spline field, or as the pyramid of one. Cheap to copy: copies share it. Give it away with std::move()
+// where memory matters; the last owner's field is let go as soon as the first step is made of it.
+class ISOWAVE_EXPORT Solid {
+  public:
+    struct State;  // lod/solid_state.h
+
+    // The field's greatest value: it is K far outside, -K far inside.
+    double K() const;
+    Space space() const;
+    const InputReport& input() const;
+    // Nothing for a pyramid that does not say.
+    const std::optional<FitSummary>& fit() const;
+    bool isPyramid() const;
+    // How long opening took, by stage.
+    const std::vector<StageSeconds>& seconds() const;
+
+  private:
+    explicit Solid(std::shared_ptr<State> state) : state_(std::move(state)) {}
+    friend struct SolidAccess;
+    std::shared_ptr<State> state_;
+};
+
+// The kind of input follows from the name's extension, from image.raw (a headerless image) and, for a .vdb, from what the
+// file says that it is.
+// Throws UsageError for an option that this kind of input does not have, for options that exclude each other and where
+// an iso-value is missing; InputError for bad data, for what has no surface and for what would not fit into memory;
+// Cancelled.
+ISOWAVE_EXPORT Solid open(const std::filesystem::path& path, const SolidOptions& options = {},
+                          const Progress& progress = {});
+// space: axes of the mesh's coordinates, which are LPS where they have a meaning.
+ISOWAVE_EXPORT Solid open(const TriangleMesh& mesh, const SolidOptions& options = {},
+                          const Progress& progress = {}, Space space = Space::unspecified);
+ISOWAVE_EXPORT Solid open(const Image& image, const SolidOptions& options = {},
+                          const Progress& progress = {});
+
+}  // namespace isowave

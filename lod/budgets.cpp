@@ -1,0 +1,82 @@
+#include "lod/budgets.h"
+
+#include <cmath>
+
+#include "isowave/error.h"
+
+namespace isowave::lod {
+
+void checkBudgets(const BudgetOptions& options, bool openBorder) {
+    if (!options.any()) return;
+    if (openBorder)
+        throw UsageError("budgets and limits on the topology need closed meshes; leave --open-border out");
+    requireSimplifier("a budget (--triangles, --ratio, --tolerance, --max-genus, --min-component)");
+}
+
+Budgets::Budgets(const BudgetOptions& options) : limits_{options.maxGenus, options.minComponent} {
+    for (const std::int64_t n : options.triangles)
+        asked_.push_back({{Budget::Kind::triangles, static_cast<double>(n)}, 0});
+    for (const double ratio : options.ratios) asked_.push_back({{Budget::Kind::triangles, 0}, ratio});
+    for (const double distance : options.tolerances)
+        asked_.push_back({{Budget::Kind::distance, distance}, 0});
+    if (asked_.empty() && options.any()) asked_.push_back({});
+}
+
+void Budgets::add(int step, const BSplineField& field, const TriangleMesh& mesh,
+                  const MeshTopology& topology) {
+    if (steps_.empty()) finestTriangles_ = topology.triangles;
+    steps_.push_back({step, mesh, topology, field.transform().voxelSize().length()});
+}
+
+BudgetReport Budgets::asReport(const Asked& asked, const Budget& budget) const {
+    BudgetReport report;
+    if (budget.kind == Budget::Kind::triangles)
+        report.trianglesAsked = static_cast<std::int64_t>(budget.value);
+    if (asked.ratio > 0) report.ratioAsked = asked.ratio;
+    if (budget.kind == Budget::Kind::distance) report.toleranceAsked = budget.value;
+    report.maxGenus = limits_.maxGenus;
+    report.minComponent = limits_.minComponent;
+    return report;
+}
+
+BudgetLevel Budgets::made(const Asked& asked, BudgetSolver& solver, const LadderVisitor& visitor,
+                          const Progress& progress, StageClock& clock) const {
+    const double begin = clock.secondsSoFar();
+    Budget budget = asked.budget;
+    if (asked.ratio > 0) budget.value = std::round(asked.ratio * static_cast<double>(finestTriangles_));
+    BudgetMesh chosen = [&] {
+        const StageClock::Scope scope(clock, "collapse");
+        return solver.choose(budget, progress);
+    }();
+    if (visitor.budget) clock.announce("write");
+    BudgetLevel level{asReport(asked, budget), {}};
+    BudgetReport& report = level.report;
+    report.step = chosen.step;
+    report.why = std::move(chosen.why);
+    {
+        const StageClock::Scope scope(clock, "measure");
+        report.topology = topologyOf(chosen.mesh);
+        report.selfIntersections = countSelfIntersections(chosen.mesh, progress);
+    }
+    report.toLevel0 = chosen.distance.aToB;
+    report.fromLevel0 = chosen.distance.bToA;
+    report.seconds = clock.secondsSoFar() - begin;
+    if (visitor.budget) {
+        const StageClock::Scope scope(clock, "write");
+        visitor.budget(report, chosen.mesh);
+        report.seconds = clock.secondsSoFar() - begin;
+    } else {
+        level.mesh = std::move(chosen.mesh);
+    }
+    return level;
+}
+
+std::vector<BudgetLevel> Budgets::make(const std::string& name, const LadderVisitor& visitor,
+                                       const Progress& progress, StageClock& clock) {
+    const auto solver = makeBudgetSolver(std::move(steps_), limits_, name);
+    std::vector<BudgetLevel> levels;
+    for (const Asked& asked : asked_) levels.push_back(made(asked, *solver, visitor, progress, clock));
+    return levels;
+}
+
+}  // namespace isowave::lod

@@ -1,0 +1,43 @@
+// Collects the meshes of all steps, then makes one mesh a budget.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/stage_clock.h"
+#include "isowave/ladder.h"
+#include "lod/simplifier.h"
+#include "volume/field.h"
+
+namespace isowave::lod {
+
+// Throws UsageError where a budget is asked for that this build, or this solid, cannot have.
+void checkBudgets(const BudgetOptions& options, bool openBorder);
+
+class Budgets {
+  public:
+    explicit Budgets(const BudgetOptions& options);
+
+    bool wanted() const { return !asked_.empty(); }
+    // REQUIRES: steps in ascending order, step 0 first; the mesh is not empty.
+    void add(int step, const BSplineField& field, const TriangleMesh& mesh, const MeshTopology& topology);
+    // name: what messages call the solid. Call it once: the meshes of the steps are given away.
+    std::vector<BudgetLevel> make(const std::string& name, const LadderVisitor& visitor,
+                                  const Progress& progress, StageClock& clock);
+
+  private:
+    struct Asked {
+        Budget budget;
+        double ratio = 0;  // of level 0's triangles, where not 0
+    };
+    BudgetLevel made(const Asked& asked, BudgetSolver& solver, const LadderVisitor& visitor,
+                     const Progress& progress, StageClock& clock) const;
+    BudgetReport asReport(const Asked& asked, const Budget& budget) const;
+
+    std::vector<Asked> asked_;
+    TopologyLimits limits_;
+    std::vector<StepMesh> steps_;
+    std::int64_t finestTriangles_ = 0;
+};
+
+}  // namespace isowave::lod

@@ -1,0 +1,103 @@
+#include "lod/fit_solid.h"
+
+#include <fmt/format.h>
+
+#include "base/number_text.h"
+#include "isowave/error.h"
+#include "lod/memory.h"
+#include "volume/distance.h"
+
+namespace isowave::lod {
+namespace {
+
+FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
+    FitSummary summary;
+    summary.method = fitting.method;
+    if (fitting.method == FitMethod::distance) {
+        summary.halfWidth = fitting.distance.halfWidth;
+        summary.band = fitting.distance.band;
+    }
+    summary.filterPasses = report.filterPasses;
+    summary.latticePoints = report.latticePoints;
+    summary.disagreeing = report.disagreeing;
+    summary.repairPasses = report.repairPasses;
+    summary.repaired = report.repaired;
+    summary.repairFloor = report.repairFloor;
+    summary.repairAgreed = report.repairAgreed;
+    return summary;
+}
+
+}  // namespace
+
+const char* nameOf(FitMethod method) { return method == FitMethod::binary ? "binary" : "distance"; }
+
+Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
+    Fitting fitting;
+    fitting.method = options.fit.value_or(fallback);
+    fitting.distance.halfWidth = options.halfWidth.value_or(fitting.distance.halfWidth);
+    fitting.distance.band = options.band.value_or(fitting.distance.band);
+    return fitting;
+}
+
+void checkFitOptions(const SolidOptions& options) {
+    const DistanceFitOptions defaults;
+    const double halfWidth = options.halfWidth.value_or(defaults.halfWidth),
+                 band = options.band.value_or(defaults.band);
+    if (band > halfWidth)
+        throw UsageError(
+            fmt::format("--band {} is wider than --half-width {}; the distance is known only within "
+                        "the half-width",
+                        band, halfWidth));
+}
+
+void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, double memoryLimit,
+         const std::string& remedy, const Progress& progress, StageClock& clock) {
+    FitReport report;
+    const auto allow = [&](double bytesEach, auto count) {
+        refuseTooLarge(solid.name(), bytesEach * static_cast<double>(count), memoryLimit, remedy);
+    };
+    if (fitting.method == FitMethod::binary) {
+        const NodeCollection nodes = [&] {
+            const StageClock::Scope scope(clock, "nodes");
+            return samples.nodes();
+        }();
+        allow(kBytesPerNode, nodes.nodeCount());
+        const StageClock::Scope scope(clock, "fit");
+        solid.field = fitBinary(nodes, fitting.binary, &report, progress);
+    } else {
+        const openvdb::FloatGrid::Ptr grid = [&] {
+            const StageClock::Scope scope(clock, "distance");
+            return samples.distance();
+        }();
+        allow(kBytesPerBandPoint, grid->activeVoxelCount());
+        const StageClock::Scope scope(clock, "fit");
+        solid.field = fitDistance(*grid, fitting.distance, &report, progress);
+    }
+    solid.fit = summaryOf(fitting, report);
+    if (report.disagreeing > 0)
+        progress.say(fmt::format("the sign of {} of {} lattice points differs from the input's",
+                                 grouped(report.disagreeing), grouped(report.latticePoints)));
+}
+
+NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance) {
+    auto inside = openvdb::BoolGrid::create(false);
+    inside->setTransform(distance.transform().copy());
+    auto& tree = inside->tree();
+    for (auto value = distance.cbeginValueAll(); value; ++value) {
+        if (*value >= 0) continue;
+        if (value.isVoxelValue())
+            tree.setValueOff(value.getCoord(), true);
+        else
+            tree.addTile(value.getLevel(), value.getCoord(), true, false);
+    }
+    return nodesFromSigns(*inside);
+}
+
+void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {
+    bool inside = false, outside = false;
+    for (auto value = field.shape->cbeginValueOn(); value && !(inside && outside); ++value)
+        (*value ? inside : outside) = true;
+    if (!inside || !outside) throw InputError(name, "has no surface at this resolution: " + remedy);
+}
+
+}  // namespace isowave::lod

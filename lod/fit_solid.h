@@ -1,0 +1,45 @@
+// From nodes or distances to the field of a solid: the part that all kinds of input have in common.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "base/stage_clock.h"
+#include "isowave/solid.h"
+#include "lod/solid_state.h"
+#include "volume/fit.h"
+
+namespace isowave::lod {
+
+struct Fitting {
+    FitMethod method;
+    DistanceFitOptions distance;
+    BinaryFitOptions binary;
+};
+// fallback: the method where the options leave it open.
+Fitting fittingOf(const SolidOptions& options, FitMethod fallback);
+
+// Throws UsageError: --band is wider than --half-width.
+void checkFitOptions(const SolidOptions& options);
+
+// "binary", "distance"
+const char* nameOf(FitMethod method);
+
+// Makes what the method needs, nodes or distances, each called at most once.
+struct Samples {
+    std::function<NodeCollection()> nodes;
+    std::function<openvdb::FloatGrid::Ptr()> distance;
+};
+
+// Fills solid.field and solid.fit. remedy: what makes the job smaller. Throws InputError where the rest of the job would
+// take more memory than the limit.
+void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, double memoryLimit,
+         const std::string& remedy, const Progress& progress, StageClock& clock);
+
+// The signs of a grid of distances, for fitBinary.
+NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance);
+
+// Throws InputError where the field has only one side. remedy: "the image holds nothing but inside".
+void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy);
+
+}  // namespace isowave::lod

@@ -1,0 +1,271 @@
+// open -> analyse, making each wanted step's mesh as it passes by, so that one field is in memory at a time -> budgets.
+#include "isowave/ladder.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <utility>
+
+#include "base/peak_memory.h"
+#include "isowave/error.h"
+#include "lod/budgets.h"
+#include "lod/level_mesher.h"
+#include "lod/pyramid_state.h"
+#include "lod/step_choice.h"
+#include "lod/steps.h"
+#include "polygonize/zero_set.h"
+
+namespace isowave {
+namespace lod {
+namespace {
+
+constexpr std::int64_t kControlPointsOfOneNode = 4 * 4 * 4;
+
+void putField(LevelReport& report, const BSplineField& field) {
+    const openvdb::Vec3d spacing = field.transform().voxelSize();
+    report.spacing = {spacing.x(), spacing.y(), spacing.z()};
+    report.controlPoints = field.controlPointCount();
+    report.nodes = definedNodeCount(field);
+    report.leafOccupancy = leafOccupancyOf(*field.shape);
+    report.memoryBytes = bytesOf(field);
+}
+
+void putChange(LevelReport& report, const SolidCounts& before) {
+    const SolidCounts now = countsOf(report.topology);
+    report.change = {now.parts - before.parts, now.handles - before.handles, now.cavities - before.cavities};
+}
+
+// Takes as long as polygonizing several times over.
+void putDeviation(LevelReport& report, const LevelMesh& level, const Progress& progress) {
+    const Deviation deviation = deviationFrom(ZeroSet(level.field, level.iso), level.mesh, progress);
+    report.maxDeviation = deviation.max;
+    report.rmsDeviation = deviation.rms;
+}
+
+// Makes and measures one mesh a step, level 0 first: the others are measured against it.
+class Maker {
+  public:
+    Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options,
+          const std::optional<Border>& openBorder, const LadderVisitor& visitor, const Progress& progress,
+          StageClock& clock)
+        : choice_(choice),
+          budgets_(budgets),
+          deviation_(options.deviation),
+          mesher_(options, openBorder, LevelMesher::Facts::thinToo, progress, clock),
+          visitor_(visitor),
+          progress_(progress),
+          clock_(clock) {}
+
+    // REQUIRES: steps in ascending order, step 0 first.
+    void visit(int step, const BSplineField& field) {
+        if (vanished_ || !choice_.visits(step)) return;
+        const double begin = clock_.secondsSoFar();
+        LevelMesh made = mesher_.make(step, field);
+        vanished_ = made.mesh.triangles.empty();
+        if (step == 0) {
+            empty_ = vanished_;
+            counts_ = countsOf(made.report.topology);
+        }
+        if (choice_.has(step)) {
+            if (vanished_)
+                progress_.say(
+                    fmt::format("step {}: the whole solid has vanished; the ladder ends before it", step));
+            tell(made, field);
+            handOn(made, begin);
+        }
+        if (budgets_.wanted() && !vanished_) budgets_.add(step, field, made.mesh, made.report.topology);
+        if (step == 0)
+            keepReference(std::move(made.mesh));
+        else if (!levels_.empty() && !visitor_.level && choice_.has(step))
+            levels_.back().mesh = std::move(made.mesh);
+    }
+
+    bool empty() const { return empty_; }
+    std::vector<Level> takeLevels() { return std::move(levels_); }
+
+  private:
+    void tell(LevelMesh& made, const BSplineField& field) {
+        LevelReport& report = made.report;
+        putField(report, field);
+        putChange(report, counts_);
+        if (visitor_.level && !vanished_) clock_.announce("write");
+        report.sampling = mesher_.sampling(made, counts_);
+        counts_ = countsOf(report.topology);
+        const StageClock::Scope scope(clock_, "measure");
+        if (vanished_) return;
+        putDistances(report, made.mesh);
+        if (deviation_) putDeviation(report, made, progress_);
+    }
+
+    void putDistances(LevelReport& report, const TriangleMesh& mesh) {
+        ReferenceSurface::Distances distances;
+        if (report.step != 0) {
+            if (!canMeasureDistances()) return;
+            if (!target_) {
+                if (visitor_.beforeMeasuring) visitor_.beforeMeasuring();
+                target_ = makeReferenceSurface(std::exchange(reference_, {}));
+            }
+            distances = target_->distances(mesh, progress_);
+        }
+        report.rmsToLevel0 = distances.toReference.rms;
+        report.maxToLevel0 = distances.toReference.max;
+        report.rmsFromLevel0 = distances.fromReference.rms;
+        report.maxFromLevel0 = distances.fromReference.max;
+    }
+
+    void handOn(LevelMesh& made, double begin) {
+        LevelReport& report = made.report;
+        report.seconds = clock_.secondsSoFar() - begin;
+        if (visitor_.level && !vanished_) {
+            const StageClock::Scope scope(clock_, "write");
+            visitor_.level(report, made.mesh);
+            progress_.check();
+            report.seconds = clock_.secondsSoFar() - begin;
+        }
+        levels_.push_back({report, {}});
+    }
+
+    void keepReference(TriangleMesh mesh) {
+        if (!visitor_.level && !levels_.empty()) levels_.back().mesh = mesh;
+        reference_ = std::move(mesh);
+        reference_.normals = {};
+    }
+
+    const StepChoice& choice_;
+    Budgets& budgets_;
+    bool deviation_;
+    LevelMesher mesher_;
+    const LadderVisitor& visitor_;
+    const Progress& progress_;
+    StageClock& clock_;
+    TriangleMesh reference_;                    // level 0, until it is first measured against
+    std::unique_ptr<ReferenceSurface> target_;  // from then on
+    SolidCounts counts_;                        // of the level before in the report, or of step 0
+    bool vanished_ = false, empty_ = true;
+    std::vector<Level> levels_;
+};
+
+// Passes every step by the maker; says what the pyramid stores.
+struct PyramidCounts {
+    int steps = 0;
+    std::int64_t coefficientsStored = 0, controlPoints = 0, coarsestControlPoints = 0;
+};
+
+PyramidCounts descendFrom(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
+                          StageClock& clock) {
+    const StageClock::Scope scope(clock, "analyse");
+    wavelets::AnalyseOptions options;
+    if (choice.lastVisited()) options.maxSteps = *choice.lastVisited();
+    BSplineField field = SolidAccess::takeField(std::move(solid));
+    PyramidCounts counts;
+    counts.controlPoints = field.controlPointCount();
+    const wavelets::Descent descent =
+        wavelets::descend(std::exchange(field, {}), options, progress,
+                          [&](int step, const BSplineField& f) { maker.visit(step, f); });
+    counts.steps = descent.steps;
+    counts.coefficientsStored = descent.coefficientsStored;
+    counts.coarsestControlPoints = descent.coarsest.controlPointCount();
+    return counts;
+}
+
+PyramidCounts walk(const wavelets::Pyramid& pyramid, const StepChoice& choice, Maker& maker,
+                   const Progress& progress, StageClock& clock) {
+    const StageClock::Scope scope(clock, "synthesise");
+    for (int step = 0; step <= pyramid.stepCount(); ++step)
+        if (choice.visits(step)) maker.visit(step, pyramid.field(step, progress));
+    return {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid),
+            pyramid.coarsest.controlPointCount()};
+}
+
+PyramidCounts climb(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
+                    StageClock& clock) {
+    const std::string name = solid.input().path;
+    const auto& pyramid = SolidAccess::of(solid).pyramid;
+    const PyramidCounts counts = pyramid ? walk(*pyramid, choice, maker, progress, clock)
+                                         : descendFrom(std::move(solid), choice, maker, progress, clock);
+    if (maker.empty()) throw InputError(name, "has no surface; nothing to polygonize");
+    if (choice.first() > counts.steps) throw InputError(name, tooFarText(choice.first(), counts.steps));
+    if (choice.last() && *choice.last() > counts.steps)
+        progress.say(fmt::format("{}: {} step {}", name,
+                                 counts.coarsestControlPoints == kControlPointsOfOneNode
+                                     ? "one node is left; the ladder ends at"
+                                     : "the ladder ends at",
+                                 counts.steps));
+    return counts;
+}
+
+}  // namespace
+}  // namespace lod
+
+Ladder makeLadder(Solid solid, const LevelOptions& options, const LadderVisitor& visitor,
+                  const Progress& progress) {
+    return makeBudget(std::move(solid), {}, options, visitor, progress);
+}
+
+Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOptions& options,
+                  const LadderVisitor& visitor, const Progress& progress) {
+    const Solid::State& state = SolidAccess::of(solid);
+    StageClock clock(state.stages, state.seconds);
+    const std::optional<lod::Border> border = state.openBorder;
+    lod::checkBudgets(budgetOptions, border.has_value());
+    lod::Budgets budgets(budgetOptions);
+    const lod::StepChoice choice(options, budgets.wanted());
+    lod::Maker maker(choice, budgets, options, border, visitor, progress, clock);
+    Ladder ladder;
+    ladder.input = solid.input();
+    ladder.fit = solid.fit();
+    ladder.K = solid.K();
+    const lod::PyramidCounts counts = lod::climb(std::move(solid), choice, maker, progress, clock);
+    ladder.levels = maker.takeLevels();
+    if (budgets.wanted()) ladder.budgets = budgets.make(ladder.input.path, visitor, progress, clock);
+    ladder.steps = counts.steps;
+    ladder.coefficientsStored = counts.coefficientsStored;
+    ladder.controlPoints = counts.controlPoints;
+    ladder.seconds = clock.stages();
+    ladder.totalSeconds = clock.secondsSoFar();
+    ladder.peakMemoryBytes = peakMemoryBytes();
+    ladder.threads = static_cast<std::int64_t>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    return ladder;
+}
+
+Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
+    const std::string name = solid.input().path;
+    const Solid::State& state = SolidAccess::of(solid);
+    StageClock clock(state.stages, state.seconds);
+    const double begin = clock.secondsSoFar();
+    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, progress, clock);
+    if (step != 0 && mesher.needsLevel0())
+        mesher.make(0, state.field ? *state.field : state.pyramid->field(0, progress));
+    const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
+    lod::LevelMesh made = mesher.make(step, field);
+    if (made.mesh.triangles.empty())
+        throw InputError(name,
+                         fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
+    lod::putField(made.report, field);
+    if (options.deviation) lod::putDeviation(made.report, made, progress);
+    made.report.seconds = clock.secondsSoFar() - begin;
+    return {std::move(made.report), std::move(made.mesh)};
+}
+
+std::vector<LevelReport> describeLevels(const Pyramid& pyramid, const LevelOptions& options,
+                                        const Progress& progress) {
+    StageClock clock;
+    lod::LevelMesher mesher(options, std::nullopt, lod::LevelMesher::Facts::few, progress, clock);
+    std::vector<LevelReport> reports;
+    SolidCounts before;
+    for (int step = 0; step <= pyramid.stepCount(); step += kStepsPerLevel) {
+        const BSplineField field = PyramidAccess::of(pyramid).field(step, progress);
+        lod::LevelMesh level = mesher.make(step, field);
+        if (level.mesh.triangles.empty()) break;
+        if (step == 0) before = countsOf(level.report.topology);
+        lod::putField(level.report, field);
+        lod::putChange(level.report, before);
+        level.report.sampling = mesher.sampling(level, before);
+        before = countsOf(level.report.topology);
+        reports.push_back(std::move(level.report));
+    }
+    return reports;
+}
+
+}  // namespace isowave

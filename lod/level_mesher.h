@@ -1,0 +1,68 @@
+// A step's field -> the mesh of that step: at which iso-value, less which specks; and what is told about its topology.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "base/stage_clock.h"
+#include "isowave/ladder.h"
+#include "lod/solid_state.h"
+#include "polygonize/specks.h"
+
+namespace isowave::lod {
+
+// Whether there are more of anything.
+bool isMore(const SolidCounts& now, const SolidCounts& before);
+
+struct LevelMesh {
+    BSplineField field;  // that of the step, or what `refit` made of it
+    TriangleMesh mesh;   // cut off at an open border
+    double iso = 0;      // of the field
+    LevelReport report;  // step, topology, refine ... features: what make() knows
+};
+
+class LevelMesher {
+  public:
+    enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
+    // Throws UsageError for options that exclude each other.
+    LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
+                const Progress& progress, StageClock& clock);
+    ~LevelMesher();
+
+    // Whether make() must have seen step 0 before any other.
+    bool needsLevel0() const { return isowave::needsLevel0(options_) || wantsThin_; }
+    // With protectThin at twice the refinement where that has fewer components and handles.
+    LevelMesh make(int step, const BSplineField& field);
+
+    // Of which kind are the parts, handles and cavities that a level has beyond those of the level before? Those that
+    // a finer lattice does not find in the same field are the mesh's sampling; the others are the field's own. The
+    // lattice is doubled until nothing of the rise is left, once at least, then neither past refine 4 nor past
+    // what level 0 has. Nothing where nothing rises, at refine 4 and for meshes cut off at an open border.
+    // level: as make() gave it; its mesh is not needed any more.
+    std::optional<SamplingReport> sampling(const LevelMesh& level, const SolidCounts& before) const;
+
+  private:
+    struct Level0;
+
+    TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
+    BSplineField fieldToDraw(int step, const BSplineField& field) const;
+    LevelMesh madeAt(int refine, int step, const BSplineField& field);
+    double smallestAt(int step, const BSplineField& field) const;
+    double isoFor(int step, const BSplineField& field, const std::optional<std::vector<double>>& thin) const;
+    SpeckRemoval draw(LevelMesh& level, double smallest);
+    void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
+    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh);
+    double isoPreservingVolume(int step, const BSplineField& field, double smallest) const;
+    std::vector<double> thinValues(const BSplineField& field, int refine) const;
+    void putIso(LevelMesh& level, double smallest) const;
+    void putFeatures(LevelMesh& level, const SpeckRemoval& removal) const;
+
+    const LevelOptions options_;
+    std::optional<Border> openBorder_;
+    bool wantsThin_;
+    const Progress& progress_;
+    StageClock& clock_;
+    std::unique_ptr<Level0> level0_;
+};
+
+}  // namespace isowave::lod

@@ -1,0 +1,231 @@
+#include "lod/open_image.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "isowave/error.h"
+#include "lod/fit_solid.h"
+#include "lod/memory.h"
+#include "lod/source.h"
+#include "volume/distance.h"
+
+namespace isowave::lod {
+namespace {
+
+// What an image shows, and what follows from it.
+struct ImagePlan {
+    InputReport::Kind kind = InputReport::Kind::greyImage;
+    double iso = 0;
+    FitMethod fit = FitMethod::distance;
+};
+
+// With as many digits as tell float32 values apart, so that --label takes what is shown.
+std::string labelList(const std::vector<float>& values) { return fmt::format("{}", fmt::join(values, ", ")); }
+
+bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
+    return image.integral && statistics.low >= 0 && !statistics.distinct.empty();
+}
+
+// Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
+// different may have become one there; only what was float32 in the file is still what it was.
+constexpr double kExact = 1 << 24;
+
+[[noreturn]] void refuseRoundedLabel(const std::string& name, double label) {
+    throw InputError(name, fmt::format("label {:.17g} cannot be told from its neighbours: voxels are kept as "
+                                       "float32, exact for labels below {:.0f}; renumber the labels",
+                                       label, kExact));
+}
+
+// What a voxel with that label holds. A label is the value after scaling: slope k + intercept with a whole k, as
+// float32 rounds it; so 0.3 finds the voxels that a slope of 0.1, itself a float32, has made of 3.
+float voxelOfLabel(const Image& image, const std::string& name, double label) {
+    if (image.componentType.starts_with("float")) {
+        const bool kept =
+            image.componentType == "float32" && static_cast<double>(static_cast<float>(label)) == label;
+        if (std::abs(label) >= kExact && !kept) refuseRoundedLabel(name, label);
+        return static_cast<float>(label);
+    }
+    const auto voxel = [&](double k) { return static_cast<float>(image.slope * k + image.intercept); };
+    const double k = std::round((label - image.intercept) / image.slope);
+    // A thousandth of a step: what is typed has a few digits. Anything else is the voxel's own float32, as `info`
+    // shows it, or no label of this image.
+    if (std::abs(image.slope * k + image.intercept - label) > 1e-3 * std::abs(image.slope))
+        return static_cast<float>(label);
+    if (std::abs(k) >= kExact || voxel(k - 1) == voxel(k) || voxel(k + 1) == voxel(k))
+        refuseRoundedLabel(name, label);
+    return voxel(k);
+}
+
+ImagePlan planForLabel(const ImageStatistics& statistics, const std::string& name, double label) {
+    if (!statistics.found)
+        throw InputError(name, statistics.distinct.empty()
+                                   ? fmt::format("no voxel has the value {}; values run from {:g} to {:g}",
+                                                 label, statistics.low, statistics.high)
+                                   : fmt::format("no voxel has the label {}; labels found: {}", label,
+                                                 labelList(statistics.distinct)));
+    return {InputReport::Kind::labels, 0.5, FitMethod::binary};
+}
+
+ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const std::string& name,
+                  const SolidOptions& options, const Progress& progress) {
+    if (options.label && options.iso)
+        throw UsageError("--label and --iso exclude each other; give one of them");
+    if (options.label) return planForLabel(statistics, name, *options.label);
+    if (statistics.low == statistics.high)
+        throw InputError(name,
+                         fmt::format("every voxel has the value {:g}; there is no surface", statistics.low));
+
+    ImagePlan plan;
+    if (statistics.distinct.size() == 2)
+        plan = {InputReport::Kind::mask, (double{statistics.low} + statistics.high) / 2, FitMethod::binary};
+    else if (looksLikeLabels(image, statistics) && !options.iso)
+        plan = {InputReport::Kind::labels, 0.5, FitMethod::binary};
+    else if (!options.iso)
+        throw UsageError(
+            fmt::format("{}: --iso is missing; values run from {}", name, rangeText(statistics)));
+    else
+        plan = {InputReport::Kind::greyImage, 0, FitMethod::distance};
+
+    if (options.iso) {
+        plan.iso = *options.iso;
+        const bool crosses = options.invert ? statistics.low < plan.iso && plan.iso <= statistics.high
+                                            : statistics.low <= plan.iso && plan.iso < statistics.high;
+        if (!crosses)
+            throw InputError(name,
+                             fmt::format("no voxel lies on the other side of --iso {:g}; values run from {}",
+                                         plan.iso, rangeText(statistics)));
+    } else if (plan.kind == InputReport::Kind::mask) {
+        progress.say(fmt::format("{}: two values, {:g} and {:g}: a mask, iso {:g}", name, statistics.low,
+                                 statistics.high, plan.iso));
+    } else if (statistics.low > 0) {
+        throw InputError(
+            name, fmt::format("a label image without a background (labels {}); choose one with --label",
+                              labelList(statistics.distinct)));
+    } else {
+        progress.say(
+            fmt::format("{}: a label image (labels {}); the solid is everything but 0; --label chooses one",
+                        name, labelList(statistics.distinct)));
+    }
+    return plan;
+}
+
+InputReport reportOf(const std::string& name, const Image& image, const ImagePlan& plan,
+                     const ImageStatistics& statistics, const SolidOptions& options) {
+    InputReport report;
+    report.path = name;
+    report.kind = plan.kind;
+    report.format = image.format;
+    report.componentType = image.componentType;
+    report.dimensions = image.size;
+    report.spacing = image.spacing();
+    report.range = {statistics.low, statistics.high};
+    report.label = options.label;
+    if (!options.label) report.iso = plan.iso;
+    report.inverted = options.invert;
+    report.openBorder = options.openBorder;
+    report.origin = image.indexToWorld.origin;
+    report.direction = directionOf(image);
+    report.space = Space::lps;
+    return report;
+}
+
+// An image about to be read for the second time, and what the first time has told.
+struct SeenImage {
+    std::optional<ImageStream> stream;
+    ImageStatistics statistics;
+    std::optional<float> label;  // as a voxel has it
+};
+
+SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions& options,
+                 const Progress& progress) {
+    SeenImage seen;
+    if (options.label) seen.label = voxelOfLabel(stream.header(), name, *options.label);
+    seen.statistics = statisticsOf(stream, seen.label, progress);
+    for (const std::string& warning : stream.header().warnings) progress.say(warning);
+    seen.stream.emplace(std::move(stream));
+    return seen;
+}
+
+Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions& options,
+                    const Progress& progress, StageClock& clock) {
+    const Image image = seen.stream->header();
+    const ImagePlan plan = planFor(image, seen.statistics, name, options, progress);
+    const Fitting fitting = fittingOf(options, plan.fit);
+    const auto spacing = image.spacing();
+    progress.say(fmt::format("{}: {}x{}x{} voxels of {:.4g} x {:.4g} x {:.4g} mm, {}, {} fit", name,
+                             image.size[0], image.size[1], image.size[2], spacing[0], spacing[1], spacing[2],
+                             nameOf(plan.kind), nameOf(fitting.method)));
+
+    Solid::State solid;
+    solid.input = reportOf(name, image, plan, seen.statistics, options);
+    solid.openBorder = borderOf(solid.input);
+    solid.space = Space::lps;
+    const ImageSolid shape{
+        .iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
+    const auto nodes = [&] {
+        NodeCollection result = nodesFromImage(*seen.stream, shape, progress);
+        seen.stream.reset();
+        return result;
+    };
+    const auto distance = [&] {
+        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress);
+        seen.stream.reset();
+        return grid;
+    };
+    fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
+        clock);
+    requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
+    return solid;
+}
+
+}  // namespace
+
+Solid::State openImage(const std::filesystem::path& path, const SolidOptions& options,
+                       const Progress& progress, StageClock& clock) {
+    const std::string name = path.string();
+    SeenImage seen = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return looked(ImageStream(path, imageReadOptions(options)), name, options, progress);
+    }();
+    return fitted(std::move(seen), name, options, progress, clock);
+}
+
+Solid::State openImage(const Image& image, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock) {
+    SeenImage seen = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return looked(ImageStream(image), "image", options, progress);
+    }();
+    return fitted(std::move(seen), "image", options, progress, clock);
+}
+
+ImageReadOptions imageReadOptions(const SolidOptions& options) {
+    ImageReadOptions result = options.image;
+    result.memoryLimit = static_cast<std::int64_t>(memoryLimit(options.maxMemory));
+    if (!result.raw) return result;
+    if (result.raw->size == std::array<std::int64_t, 3>{})
+        throw UsageError(
+            "--type, --endian and --header-bytes describe a headerless image; give its --size too");
+    if (result.raw->type.empty()) throw UsageError("--size needs --type, the type of a voxel, such as int16");
+    return result;
+}
+
+std::array<std::array<double, 3>, 3> directionOf(const Image& image) {
+    const auto spacing = image.spacing();
+    std::array<std::array<double, 3>, 3> rows = image.indexToWorld.axis;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (double& x : rows[axis]) x /= spacing[axis];
+    return rows;
+}
+
+std::string rangeText(const ImageStatistics& statistics) {
+    std::string text = fmt::format("{:g} to {:g} (", statistics.low, statistics.high);
+    for (const auto& [percent, value] : statistics.percentiles)
+        text += fmt::format("{}{} % below {:g}", percent == statistics.percentiles.front().first ? "" : ", ",
+                            percent, value);
+    return text + ")";
+}
+
+}  // namespace isowave::lod

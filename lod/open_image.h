@@ -1,0 +1,27 @@
+// Images: masks, labels, grey values.
+#pragma once
+
+#include <string>
+
+#include "base/stage_clock.h"
+#include "io/image/stream.h"
+#include "lod/solid_state.h"
+#include "volume/image_statistics.h"
+
+namespace isowave::lod {
+
+Solid::State openImage(const std::filesystem::path& path, const SolidOptions& options,
+                       const Progress& progress, StageClock& clock);
+Solid::State openImage(const Image& image, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock);
+
+// What the readers of images are told. Throws UsageError for a headerless image whose size or type is missing.
+ImageReadOptions imageReadOptions(const SolidOptions& options);
+
+// "-1024 to 2986 (1 % below -1024, 5 % ..."
+std::string rangeText(const ImageStatistics& statistics);
+
+// Unit vectors along the three axes of the lattice, LPS.
+std::array<std::array<double, 3>, 3> directionOf(const Image& image);
+
+}  // namespace isowave::lod

@@ -1,0 +1,137 @@
+#include "lod/open_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "io/mesh/read.h"
+#include "isowave/error.h"
+#include "lod/fit_solid.h"
+#include "lod/memory.h"
+#include "volume/distance.h"
+#include "volume/mesh_repair.h"
+
+namespace isowave::lod {
+namespace {
+
+// Voxels along the longest axis of a mesh when nothing is said.
+constexpr std::int64_t kDefaultVoxels = 256;
+
+constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
+
+double voxelSizeFor(const TriangleMesh& mesh, const SolidOptions& options, const std::string& name,
+                    const Progress& progress) {
+    if (options.voxel && options.voxels)
+        throw UsageError("--voxel and --voxels exclude each other; give one of them");
+    if (options.voxel) return *options.voxel;
+    if (!options.voxels)
+        progress.say(fmt::format("{}: --voxels {} along the longest axis", name, kDefaultVoxels));
+    return voxelForCount(mesh, static_cast<double>(options.voxels.value_or(kDefaultVoxels)));
+}
+
+std::array<double, 3> extentOf(const TriangleMesh& mesh) {
+    std::array<double, 3> extent{};
+    if (mesh.points.empty()) return extent;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto [low, high] =
+            std::minmax_element(mesh.points.begin(), mesh.points.end(),
+                                [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+        extent[axis] = (*high)[axis] - (*low)[axis];
+    }
+    return extent;
+}
+
+struct ClosedMesh {
+    LoadedMesh loaded;
+    MeshRepairReport repair;
+};
+
+ClosedMesh closed(LoadedMesh loaded, const std::string& name, const Progress& progress) {
+    ClosedMesh result{std::move(loaded), {}};
+    result.loaded.mesh = repairMesh(std::move(result.loaded.mesh), name, &result.repair, {}, progress);
+    return result;
+}
+
+InputReport reportOf(const ClosedMesh& input, const std::string& name, double voxel) {
+    InputReport report;
+    report.path = name;
+    report.kind = InputReport::Kind::mesh;
+    report.format = input.loaded.format;
+    report.dimensions.emplace();
+    const auto extent = extentOf(input.loaded.mesh);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        (*report.dimensions)[axis] = static_cast<std::int64_t>(std::ceil(extent[axis] / voxel));
+    report.spacing = {voxel, voxel, voxel};
+    report.triangles = input.repair.facesRead;
+    report.repairNotes = input.repair.notes;
+    report.space = input.loaded.space;
+    return report;
+}
+
+Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
+                    const Progress& progress, StageClock& clock) {
+    const TriangleMesh& mesh = input.loaded.mesh;
+    for (const std::string& note : input.repair.notes) progress.say(note);
+
+    const Fitting fitting = fittingOf(options, FitMethod::distance);
+    const double voxel = voxelSizeFor(mesh, options, name, progress), limit = memoryLimit(options.maxMemory);
+    refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, fitting.distance.halfWidth),
+                   limit, kRemedy);
+    const auto transform = transformForMesh(mesh, voxel);
+    Solid::State solid;
+    solid.input = reportOf(input, name, voxel);
+    solid.space = input.loaded.space;
+    const auto& dimensions = *solid.input.dimensions;
+    progress.say(fmt::format("{}: {}, {}x{}x{} voxels of {:.4g}, {} fit", name,
+                             counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"),
+                             dimensions[0], dimensions[1], dimensions[2], voxel, nameOf(fitting.method)));
+
+    const auto distance = [&] {
+        return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
+    };
+    fit(solid, fitting, {[&] { return nodesOfDistance(*distance()); }, distance}, limit, kRemedy, progress,
+        clock);
+    requireSurface(*solid.field, name,
+                   "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
+    return solid;
+}
+
+}  // namespace
+
+LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress) {
+    MeshFileInfo info;
+    LoadedMesh loaded;
+    loaded.mesh = readMesh(path, &info, progress);
+    loaded.format = info.format;
+    if (info.space == "LPS") loaded.space = Space::lps;
+    if (info.space == "RAS") {
+        // Inside the program everything is LPS. Half a turn about z: orientation stays.
+        loaded.space = Space::ras;
+        for (Point& p : loaded.mesh.points) p[0] = -p[0], p[1] = -p[1];
+        for (auto& n : loaded.mesh.normals) n[0] = -n[0], n[1] = -n[1];
+    }
+    return loaded;
+}
+
+Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,
+                      const Progress& progress, StageClock& clock) {
+    const std::string name = path.string();
+    const ClosedMesh input = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return closed(loadMesh(path, progress), name, progress);
+    }();
+    return fitted(input, name, options, progress, clock);
+}
+
+Solid::State openMesh(const TriangleMesh& mesh, Space space, const SolidOptions& options,
+                      const Progress& progress, StageClock& clock) {
+    const ClosedMesh input = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return closed({mesh, space, "triangles in memory"}, "mesh", progress);
+    }();
+    return fitted(input, "mesh", options, progress, clock);
+}
+
+}  // namespace isowave::lod

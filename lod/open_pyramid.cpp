@@ -1,0 +1,29 @@
+#include "lod/open_pyramid.h"
+
+#include "lod/source.h"
+#include "wavelets/pyramid_file.h"
+
+namespace isowave::lod {
+
+Solid::State openPyramid(const std::filesystem::path& path, int finestStep, StageClock& clock) {
+    const StageClock::Scope scope(clock, "read");
+    Solid::State solid;
+    solid.pyramid = wavelets::readPyramid(path, finestStep);
+    const auto& source = solid.pyramid->source;
+    InputReport& input = solid.input;
+    input.path = path.string();
+    input.kind = InputReport::Kind::pyramid;
+    input.source = source;
+    input.madeFrom = inputOfSource(source);
+    solid.fit = fitOfSource(source);
+    if (!input.madeFrom) return solid;
+    input.dimensions = input.madeFrom->dimensions;
+    input.spacing = input.madeFrom->spacing;
+    input.iso = input.madeFrom->iso;
+    input.space = input.madeFrom->space;
+    solid.openBorder = borderOf(*input.madeFrom);
+    solid.space = input.space.value_or(Space::unspecified);
+    return solid;
+}
+
+}  // namespace isowave::lod

@@ -1,0 +1,39 @@
+#include "isowave/pyramid.h"
+
+#include "isowave/error.h"
+#include "lod/field_state.h"
+#include "lod/pyramid_state.h"
+#include "lod/source.h"
+#include "lod/steps.h"
+#include "wavelets/pyramid_file.h"
+
+namespace isowave {
+
+Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep) {
+    return PyramidAccess::make(wavelets::readPyramid(path, finestStep));
+}
+
+void Pyramid::save(const std::filesystem::path& path) const { wavelets::writePyramid(path, state_->pyramid); }
+
+double Pyramid::K() const { return state_->pyramid.K; }
+int Pyramid::stepCount() const { return state_->pyramid.stepCount(); }
+
+Field Pyramid::field(int step, const Progress& progress) const {
+    return FieldAccess::make(state_->pyramid.field(step, progress));
+}
+
+std::vector<StepFacts> Pyramid::steps() const { return lod::factsOf(state_->pyramid); }
+std::int64_t Pyramid::coefficientsStored() const { return state_->pyramid.coefficientsStored(); }
+std::int64_t Pyramid::controlPoints() const { return lod::finestControlPoints(state_->pyramid); }
+std::int64_t Pyramid::memoryBytes() const { return lod::bytesOf(state_->pyramid); }
+const std::map<std::string, std::string>& Pyramid::source() const { return state_->pyramid.source; }
+
+Pyramid analyse(Solid solid, const Progress& progress) {
+    if (solid.isPyramid()) throw UsageError(solid.input().path + " is a pyramid already");
+    auto source = lod::sourceOf(solid.input(), solid.fit());
+    wavelets::Pyramid pyramid = wavelets::analyse(SolidAccess::takeField(std::move(solid)), {}, progress);
+    pyramid.source = std::move(source);
+    return PyramidAccess::make(std::move(pyramid));
+}
+
+}  // namespace isowave

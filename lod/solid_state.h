@@ -1,0 +1,44 @@
+// What is behind a Solid, for isowave's own sources.
+#pragma once
+
+#include "isowave/solid.h"
+#include "volume/field.h"
+#include "wavelets/pyramid.h"
+
+namespace isowave {
+
+namespace lod {
+
+// With an open border: where the image ends, and meshes with it.
+struct Border {
+    openvdb::Mat4d worldToIndex;
+    openvdb::Vec3d low, high;  // the first and the last voxel
+};
+
+}  // namespace lod
+
+struct Solid::State {
+    // One of the two.
+    std::optional<BSplineField> field;
+    std::optional<wavelets::Pyramid> pyramid;
+    Space space = Space::unspecified;
+    std::optional<lod::Border> openBorder;
+    InputReport input;
+    std::optional<FitSummary> fit;
+    std::vector<StageSeconds> stages;
+    double seconds = 0;
+
+    // What messages call it.
+    const std::string& name() const { return input.path; }
+};
+
+struct SolidAccess {
+    static Solid make(Solid::State state) { return Solid(std::make_shared<Solid::State>(std::move(state))); }
+    static const Solid::State& of(const Solid& solid) { return *solid.state_; }
+    // The field, moved out where nobody else holds the solid. REQUIRES: it has one.
+    static BSplineField takeField(Solid solid) {
+        return solid.state_.use_count() == 1 ? *std::exchange(solid.state_->field, {}) : *solid.state_->field;
+    }
+};
+
+}  // namespace isowave

@@ -1,0 +1,32 @@
+// Which steps are asked for, and which are looked at.
+#pragma once
+
+#include <optional>
+
+#include "isowave/ladder.h"
+
+namespace isowave::lod {
+
+class StepChoice {
+  public:
+    // budgets: every step is looked at, but levels are asked for only where the options say so. Throws UsageError.
+    StepChoice(const LevelOptions& options, bool budgets);
+
+    // Whether the step's level is asked for.
+    bool has(int step) const {
+        return levels_ && step >= first_ && (!last_ || step <= *last_) && step % stride_ == 0;
+    }
+    // Whether the step is looked at, be it asked for or not.
+    bool visits(int step) const { return all_ || step == 0 || has(step); }
+    int first() const { return first_; }
+    std::optional<int> last() const { return last_; }
+    std::optional<int> lastVisited() const { return all_ ? std::nullopt : last_; }
+
+  private:
+    bool levels_, all_;
+    int stride_;
+    int first_ = 0;
+    std::optional<int> last_;
+};
+
+}  // namespace isowave::lod

@@ -1,0 +1,93 @@
+#include "lod/steps.h"
+
+#include <fmt/format.h>
+
+#include "isowave/error.h"
+
+namespace isowave::lod {
+namespace {
+
+// The field of a step, as far as its shape tells.
+BSplineField knownOf(const Shape::Ptr& shape) {
+    BSplineField known;
+    known.controlPoints = openvdb::FloatGrid::create(
+        std::make_shared<openvdb::FloatTree>(shape->tree(), 0.0f, openvdb::TopologyCopy()));
+    known.shape = shape;
+    return known;
+}
+
+std::array<std::int64_t, 3> domainOf(const Shape& shape) {
+    const auto box = shape.evalActiveVoxelBoundingBox();
+    if (box.empty()) return {};
+    const openvdb::Coord nodes = box.dim() - openvdb::Coord(3);  // m + 3 control points: m nodes
+    return {nodes.x(), nodes.y(), nodes.z()};
+}
+
+}  // namespace
+
+std::string tooFarText(int step, int count) {
+    return fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", count, count / kStepsPerLevel,
+                       step);
+}
+
+BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock) {
+    const std::string name = solid.input().path;
+    if (const auto& pyramid = SolidAccess::of(solid).pyramid) {
+        const StageClock::Scope scope(clock, "synthesise");
+        if (step > pyramid->stepCount()) throw InputError(name, tooFarText(step, pyramid->stepCount()));
+        return pyramid->field(step, progress);
+    }
+    if (step == 0) return SolidAccess::takeField(std::move(solid));
+    const StageClock::Scope scope(clock, "analyse");
+    const wavelets::Descent descent =
+        wavelets::descend(SolidAccess::takeField(std::move(solid)), {.maxSteps = step}, progress);
+    if (step > descent.steps) throw InputError(name, tooFarText(step, descent.steps));
+    return descent.coarsest;
+}
+
+std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid) {
+    std::vector<StepFacts> facts(pyramid.steps.size() + 1);
+    openvdb::Vec3d spacing = pyramid.coarsest.transform().voxelSize();
+    std::int64_t coefficients = 0;
+    for (int step = pyramid.stepCount(); step >= 0; --step) {
+        const bool last = step == pyramid.stepCount();
+        const Shape::Ptr shape = last ? pyramid.coarsest.shape : pyramid.steps[step].shape;
+        StepFacts& f = facts[step];
+        f.step = step;
+        if (step > 0) f.halvedAxis = pyramid.steps[step - 1].axis;
+        if (!last) spacing[pyramid.steps[step].axis] /= 2;
+        f.spacing = {spacing.x(), spacing.y(), spacing.z()};
+        f.domain = domainOf(*shape);
+        f.controlPoints = static_cast<std::int64_t>(shape->activeVoxelCount());
+        f.nodes = definedNodeCount(knownOf(shape));  // looks at what is known, not at the values
+        f.details = last ? 0 : static_cast<std::int64_t>(pyramid.steps[step].details->activeVoxelCount());
+        coefficients += last ? f.controlPoints : f.details;
+        f.coefficients = coefficients;
+        f.leafOccupancy = leafOccupancyOf(*shape);
+    }
+    return facts;
+}
+
+double leafOccupancyOf(const Shape& shape) {
+    constexpr double kLeafVoxels = openvdb::BoolTree::LeafNodeType::SIZE;
+    const double held = kLeafVoxels * static_cast<double>(shape.tree().leafCount());
+    return held > 0 ? static_cast<double>(shape.activeVoxelCount()) / held : 0;
+}
+
+std::int64_t bytesOf(const BSplineField& field) {
+    return static_cast<std::int64_t>(field.controlPoints->memUsage() + field.shape->memUsage());
+}
+
+std::int64_t bytesOf(const wavelets::Pyramid& pyramid) {
+    std::int64_t bytes = bytesOf(pyramid.coarsest);
+    for (const wavelets::Step& step : pyramid.steps)
+        bytes += static_cast<std::int64_t>(step.shape->memUsage() + step.details->memUsage());
+    return bytes;
+}
+
+std::int64_t finestControlPoints(const wavelets::Pyramid& pyramid) {
+    const Shape& shape = pyramid.steps.empty() ? *pyramid.coarsest.shape : *pyramid.steps.front().shape;
+    return static_cast<std::int64_t>(shape.activeVoxelCount());
+}
+
+}  // namespace isowave::lod

@@ -1,0 +1,32 @@
+// Steps of a solid, wherever they come from: taken off a pyramid that was read, or by analysing a field.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/stage_clock.h"
+#include "isowave/pyramid.h"
+#include "lod/solid_state.h"
+
+namespace isowave::lod {
+
+// The field of a step. Throws InputError when the solid does not go so far.
+BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock);
+
+// "has steps 0 to 12 (levels 0 to 4), not step 15"
+std::string tooFarText(int step, int count);
+
+// Finest first, one for each step and one for the coarsest field.
+std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid);
+
+// Share of the lattice points in leaves that are control points, 0 to 1.
+double leafOccupancyOf(const Shape& shape);
+
+// Bytes in memory.
+std::int64_t bytesOf(const BSplineField& field);
+std::int64_t bytesOf(const wavelets::Pyramid& pyramid);
+
+// |I| of step 0.
+std::int64_t finestControlPoints(const wavelets::Pyramid& pyramid);
+
+}  // namespace isowave::lod

@@ -1,0 +1,266 @@
+// What a level's mesh is made like, and what is told about it: the iso-value, specks, topology, features, sampling.
+#include "tests/lod/solids.h"
+#include "tests/zoo/zoo.h"
+#include "tools/report/level_story.h"
+
+namespace isowave::lod_test {
+namespace {
+
+using testing::HasSubstr;
+
+// A box 40 x 40 x 14 with four holes of radius 1.5, 2.5, 4 and 6 voxels through it, and a grain of radius 1.7 beside it.
+double plate(double x, double y, double z) {
+    const double radius[] = {1.5, 2.5, 4, 6};
+    double d = std::max({std::abs(x - 27.3) - 22.2, std::abs(y - 27.4) - 22.1, std::abs(z - 12.2) - 5.1});
+    for (int i = 0; i < 4; ++i)
+        d = std::max(d, radius[i] - std::hypot(x - 16.6 - 21.7 * (i % 2), y - 16.1 - 22.3 * (i / 2)));
+    return std::min(d, std::hypot(x - 27, y - 27, z - 24.1) - 1.7);
+}
+
+// A wall 2 voxels thick, in a frame that is 8 thick.
+double framedWall(double x, double y, double z) {
+    const double a = std::max(std::abs(x - 30.2), std::abs(y - 29.7)), h = std::abs(z + 0.15 * x - 20.3);
+    return std::min(std::max(h - 1, a - 22), std::max({h - 4, a - 22, 16 - a}));
+}
+
+Solid plateSolid() { return open(distanceImage({56, 56, 30}, plate), {.iso = 0}); }
+Solid wallSolid() { return open(distanceImage({62, 62, 36}, framedWall), {.iso = 0}); }
+
+Solid realSolid(const std::string& file, const SolidOptions& options) {
+    return open(std::filesystem::path(ISOWAVE_TEST_DATA) / file, options);
+}
+
+TEST(Levels, KeepTheVolumeOfLevel0) {
+    const auto levels = levelsOf(plateSolid(), {.levels = StepRange{0, 3}, .preserveVolume = true});
+    ASSERT_GE(levels.size(), 3u);
+    const double volume = levels[0].topology.volume;
+    EXPECT_EQ(levels[0].isoShift, 0);
+    EXPECT_EQ(levels[0].volumeError, 0);
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        const LevelReport& level = levels[i];
+        EXPECT_LT(std::abs(*level.volumeError), 1e-4) << i;
+        EXPECT_NEAR(level.topology.volume, volume, 1.0001e-4 * volume) << i;
+        EXPECT_NE(level.isoShift, 0) << i;
+        EXPECT_LT(std::abs(level.isoShift), 0.75) << i;
+        // The distance is what the volume grew by, over the area.
+        const double grown = level.topology.volume - *level.volumeAtIso0;
+        EXPECT_NEAR(*level.isoDistance, grown / level.topology.area, 0.3 * std::abs(*level.isoDistance)) << i;
+        expectSound(level.topology);
+        EXPECT_THAT(tools::storyText(level, " mm"), HasSubstr("moves the surface by"));
+    }
+    const auto free = levelsOf(plateSolid(), {.levels = StepRange{0, 2}});
+    EXPECT_EQ(free[1].isoShift, 0);
+    EXPECT_EQ(free[1].topology.volume, levels[1].volumeAtIso0);
+}
+
+TEST(Levels, SayWhereTheVolumeIsOutOfReach) {
+    const Image ball = distanceImage(
+        {24, 24, 24}, [](int x, int y, int z) { return std::hypot(x - 11.6, y - 11.4, z - 11.8) - 1.2; });
+    Remarks remarks;
+    bool missed = false;
+    for (const LevelReport& level :
+         levelsOf(open(ball, {.iso = 0}), {.preserveVolume = true}, remarks.progress()))
+        missed = missed || (level.volumeError && std::abs(*level.volumeError) > 1e-4);
+    EXPECT_THAT(remarks.text, HasSubstr("the volume of level 0 is out of reach"));
+    EXPECT_TRUE(missed);
+    remarks.text.clear();
+    levelsOf(plateSolid(), {.levels = StepRange{0, 2}, .preserveVolume = true}, remarks.progress());
+    EXPECT_EQ(remarks.text, "");
+}
+
+TEST(Levels, KeepThinWallsWhenAsked) {
+    const auto torn = levelsOf(wallSolid(), {.levels = StepRange{0, 2}}),
+               kept = levelsOf(wallSolid(), {.levels = StepRange{0, 2}, .protectThin = true});
+    EXPECT_EQ(torn[0].topology.genus, 0);
+    EXPECT_GT(torn[2].topology.genus, 0) << "the wall is torn or gone";
+    EXPECT_LT(torn[2].thinKept, 0.9);
+    EXPECT_EQ(torn[2].thinKept, torn[2].thinKeptAtIso0);
+    for (std::size_t i = 1; i <= 2; ++i) {
+        EXPECT_GE(kept[i].thinKept, 0.95) << i;
+        EXPECT_LE(kept[i].topology.genus, 1) << i;
+        EXPECT_EQ(kept[i].topology.parts, 1) << i;
+        EXPECT_GE(kept[i].isoShift, 0) << i;
+        EXPECT_EQ(kept[i].thinKeptAtIso0, torn[i].thinKept) << i;
+    }
+    EXPECT_GT(kept[2].isoDistance, 0);
+    EXPECT_LT(kept[2].isoDistance, 0.5 * kept[2].spacing[0]);
+}
+
+TEST(Levels, AreTheSameAloneAsInALadder) {
+    LevelOptions volume, thin, specks;
+    volume.preserveVolume = thin.protectThin = specks.keepSpecks = true;
+    for (LevelOptions options : {volume, thin, specks}) {
+        const Level alone = makeLevel(wallSolid(), 6, options);
+        options.levels = StepRange{0, 2};
+        const Ladder ladder = makeLadder(wallSolid(), options);
+        EXPECT_EQ(alone.mesh.points, ladder.levels[2].mesh.points);
+        EXPECT_EQ(alone.mesh.triangles, ladder.levels[2].mesh.triangles);
+        EXPECT_EQ(alone.report.isoShift, ladder.levels[2].report.isoShift);
+    }
+}
+
+TEST(Levels, RefuseTwoReasonsForOneIsoValue) {
+    EXPECT_THROW(makeLadder(wallSolid(), {.preserveVolume = true, .protectThin = true}), UsageError);
+    const Image wall = distanceImage({62, 62, 36}, framedWall);
+    EXPECT_THROW(makeLadder(open(wall, {.iso = 0, .openBorder = true}), {.preserveVolume = true}),
+                 UsageError);
+    EXPECT_THROW(makeLadder(wallSolid(), {.levels = StepRange{}, .steps = StepRange{}}), UsageError);
+}
+
+TEST(Levels, LoseSpecksUnlessTheyAreToBeKept) {
+    const auto clean = levelsOf(plateSolid(), {.steps = StepRange{0, 4}}),
+               all = levelsOf(plateSolid(), {.steps = StepRange{0, 4}, .keepSpecks = true});
+    EXPECT_EQ(clean[0].topology.parts, 2) << "a grain of the input is data";
+    EXPECT_EQ(clean[0].specksRemoved, 0);
+    bool removed = false;
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+        const LevelReport &c = clean[i], &a = all[i];
+        EXPECT_EQ(a.specksRemoved, 0);
+        EXPECT_EQ(a.topology.parts, c.topology.parts + c.specksRemoved) << i;
+        EXPECT_EQ(a.topology.cavities, c.topology.cavities + c.bubblesRemoved) << i;
+        EXPECT_NEAR(a.topology.volume, c.topology.volume + c.speckVolume - c.bubbleVolume, 1e-9);
+        if (c.specksRemoved > 0) {
+            EXPECT_LT(c.speckVolume / static_cast<double>(c.specksRemoved),
+                      c.spacing[0] * c.spacing[1] * c.spacing[2]);
+            removed = true;
+        }
+        expectSound(c.topology);
+    }
+    EXPECT_TRUE(removed) << "the grain becomes smaller than a node at some step";
+}
+
+TEST(Levels, TellWhatBecameOfHolesAndParts) {
+    const auto levels = levelsOf(plateSolid(), {.levels = StepRange{0, 3}, .features = true});
+    const FeatureReport& f0 = *levels[0].features;
+    EXPECT_EQ(f0.handles.survived, 4);
+    EXPECT_EQ(f0.parts.survived, 2);
+    EXPECT_NEAR(*f0.handles.smallestSurviving, 0.5 * 1.5, 0.4);
+    EXPECT_EQ(f0.handles.largestVanished, std::nullopt);
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        const LevelReport& level = levels[i];
+        const SolidCounts now = countsOf(level.topology), before = countsOf(levels[i - 1].topology);
+        const FeatureFate &holes = level.features->handles, &parts = level.features->parts;
+        EXPECT_EQ(holes.survived + holes.vanished + holes.torn, 4) << i;
+        EXPECT_EQ(level.change.handles, now.handles - before.handles);
+        EXPECT_EQ(level.change.parts, now.parts - before.parts);
+        // Components and handles never rise by more than what is explained.
+        EXPECT_LE(now.handles, holes.survived + holes.more);
+        EXPECT_LE(now.parts, parts.survived + parts.more);
+        if (i <= 2) {
+            EXPECT_EQ(holes.more, 0) << i;
+            EXPECT_EQ(parts.more, 0) << i;
+        }
+    }
+    const std::string story = tools::storyText(levels[2], " mm");
+    EXPECT_THAT(story, HasSubstr("level 2 (2 mm): "));
+    EXPECT_THAT(story, HasSubstr("holes closed up to radius"));
+    EXPECT_FALSE(levelsOf(plateSolid(), {.levels = StepRange{0, 1}})[1].features);
+}
+
+// The rule of docs/topology.md: of what a level has beyond the level before, a finer lattice does not find what the
+// mesh's sampling adds; what is left is torn, so that something thin is lost. Returns how many were explained.
+std::int64_t explainedBySampling(const std::vector<LevelReport>& levels, const std::string& what) {
+    std::int64_t explained = 0;
+    for (const LevelReport& level : levels) {
+        const SolidCounts counts = countsOf(level.topology), &change = level.change;
+        const bool more = change.parts > 0 || change.handles > 0 || change.cavities > 0;
+        EXPECT_EQ(level.sampling.has_value(), more) << what << level.step;
+        if (!level.sampling) continue;
+        EXPECT_GT(level.sampling->refine, level.refine);
+        for (const auto kind : {&SolidCounts::parts, &SolidCounts::handles, &SolidCounts::cavities}) {
+            const std::int64_t now = counts.*kind, before = now - change.*kind,
+                               finer = level.sampling->counts.*kind;
+            if (now <= before) continue;
+            explained += std::clamp<std::int64_t>(now - finer, 0, now - before);
+            if (finer > before) {
+                EXPECT_LT(level.sampling->thinKept, 1.0)
+                    << what << level.step << ": " << finer - before << " of unknown origin";
+            }
+        }
+    }
+    return explained;
+}
+
+TEST(Levels, OfRealSolidsRiseOnlyBySamplingAndTearing) {
+    const auto explained = [](const std::string& file, const SolidOptions& options,
+                              const LevelOptions& levels) {
+        return explainedBySampling(levelsOf(realSolid(file, options), levels), file + " ");
+    };
+    const LevelOptions all, steps{.steps = StepRange{0, 9}};
+    EXPECT_GT(explained("ct/cranium_crop.nrrd", {.iso = 300}, all), 0);  // seen: a part of level 3
+    EXPECT_GT(explained("meshes/pinion.off", {.voxels = 64}, all), 0);   // seen: 4 handles of levels 2 and 3
+    EXPECT_GT(explained("meshes/gearwheel.bin.stl", {.voxels = 64}, steps), 0);
+    EXPECT_GT(explained("meshes/bones.off", {.voxels = 64}, steps), 0);
+}
+
+// A solid of the zoo as a mask of -1 and 1, 4 voxels of background around it.
+Image maskOf(const zoo::Solid& solid) {
+    const openvdb::Coord low = solid.box.min().offsetBy(-4), dim = solid.box.dim().offsetBy(8);
+    return imageOf({dim.x(), dim.y(), dim.z()}, [&](int x, int y, int z) {
+        const openvdb::Coord c = low.offsetBy(x, y, z);
+        return solid.box.isInside(c) && solid.inside(c) ? 1 : -1;
+    });
+}
+
+TEST(Levels, OfTheZooRiseOnlyBySamplingAndTearing) {
+    std::int64_t explained = 0;
+    int solids = 0;
+    for (const auto& group :
+         {zoo::smoothSolids(), zoo::cadSolids(), zoo::thinSolids(), zoo::noisySolids(), zoo::borderSolids()})
+        for (const zoo::Solid& solid : group) {
+            explained += explainedBySampling(levelsOf(open(maskOf(solid), {.iso = 0})), solid.name + " ");
+            ++solids;
+        }
+    EXPECT_GE(solids, 12);
+    EXPECT_GT(explained, 0);
+}
+
+TEST(Levels, SayHowMuchOfARiseIsSampling) {
+    EXPECT_FALSE(levelsOf(wallSolid(), {.levels = StepRange{0, 1}})[0].sampling);
+    EXPECT_FALSE(levelsOf(plateSolid(), {.levels = StepRange{0, 1}})[1].sampling) << "nothing rises";
+    // A second run at that refinement has the same counts.
+    const auto pinion = [](int refine) {
+        return levelsOf(realSolid("meshes/pinion.off", {.voxels = 64}),
+                        {.levels = StepRange{2, 2}, .refine = refine})[0];
+    };
+    const LevelReport level = pinion(1), fine = pinion(2);
+    EXPECT_EQ(level.change.handles, 1);
+    EXPECT_EQ(level.refine, 1);
+    EXPECT_EQ(level.sampling->refine, 2);
+    EXPECT_THAT(tools::storyText(level, ""),
+                HasSubstr("1 of 1 new handle is the mesh's sampling, --refine 2 has 1"));
+    EXPECT_EQ(level.sampling->counts, countsOf(fine.topology));
+    EXPECT_EQ(fine.refine, 2);
+    EXPECT_FALSE(fine.sampling);
+}
+
+TEST(Levels, AreSampledFinerWhereTheMeshPerforatesThinWalls) {
+    const auto levels = levelsOf(realSolid("meshes/pinion.off", {.voxels = 64}),
+                                 {.levels = StepRange{0, 2}, .protectThin = true});
+    const int refine[] = {1, 1, 2};
+    for (std::size_t i = 0; i <= 2; ++i) {
+        EXPECT_EQ(levels[i].refine, refine[i]) << i;
+        EXPECT_EQ(levels[i].topology.genus, 1) << i;
+    }
+    EXPECT_EQ(makeLevel(realSolid("meshes/pinion.off", {.voxels = 64}), 6, {.protectThin = true})
+                  .report.topology.triangles,
+              levels[2].topology.triangles);
+}
+
+TEST(Levels, OfAPyramidAreToldWithoutMeshes) {
+    const auto levels = levelsOf(plateSolid());
+    const auto told = describeLevels(analyse(plateSolid()));
+    ASSERT_GE(told.size(), 3u);
+    for (std::size_t i = 0; i < told.size(); ++i) {
+        EXPECT_EQ(told[i].level, levels[i].level);
+        EXPECT_EQ(told[i].spacing, levels[i].spacing);
+        EXPECT_EQ(countsOf(told[i].topology), countsOf(levels[i].topology));
+        EXPECT_EQ(told[i].change, levels[i].change);
+        EXPECT_EQ(told[i].topology.triangles, levels[i].topology.triangles);
+        EXPECT_EQ(told[i].specksRemoved, levels[i].specksRemoved);
+    }
+    EXPECT_THAT(tools::storyText(told[0], " mm"), HasSubstr("level 0 (0.5 mm): 4 handles, 2 parts"));
+}
+
+}  // namespace
+}  // namespace isowave::lod_test
