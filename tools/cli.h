@@ -1,4 +1,4 @@
-// argv -> a subcommand and its settings, as the table of commands.h declares them.
+// argv -> a subcommand with its arguments and options put in.
 #pragma once
 
 #include "tools/commands.h"
@@ -6,12 +6,11 @@
 namespace isowave::tools {
 
 struct Invocation {
-    const Command* command = nullptr;  // nullptr: `isowave --help` or `isowave --version`
-    bool version = false;
-    Settings settings;
+    Command* command = nullptr;  // one of `commands`; nullptr: `isowave --help` or `isowave --version`
+    bool help = false, version = false;
 };
 
 // Throws UsageError with one line that names the argument.
-Invocation parseCommandLine(int argc, const char* const* argv);
+Invocation parseCommandLine(const Commands& commands, int argc, const char* const* argv);
 
 }  // namespace isowave::tools

@@ -66,6 +66,7 @@ void Console::clearProgress() {
 Progress Console::progress() {
     Progress progress;
     progress.stopRequested = [] { return stopRequested.load(std::memory_order_relaxed); };
+    progress.remark = [this](std::string_view line) { say(line); };
     if (terminal_ && !quiet_)
         progress.report = [this](std::string_view stage, double done) { show(stage, done); };
     return progress;

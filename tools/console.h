@@ -35,7 +35,7 @@ class Console {
     // Takes the progress line away.
     void clearProgress();
 
-    // Reports to the progress line when standard error is a terminal; asks to stop after a signal.
+    // Reports to the progress line when standard error is a terminal; asks to stop after a signal; passes remarks on to say().
     // REQUIRES: the Console outlives it.
     Progress progress();
 

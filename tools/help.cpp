@@ -41,11 +41,9 @@ std::string explained(const Option& option) {
 }
 
 std::string usage(const Command& command) {
-    std::string line = fmt::format("isowave {} {}", command.name, command.arguments);
-    if (command.needsOutput) line += " -o PATH";
-    const bool hasOptions = std::any_of(options().begin(), options().end(),
-                                        [&](const Option& option) { return option.belongsTo(command.name); });
-    return hasOptions ? line + " [options]" : line;
+    std::string line = fmt::format("isowave {} {}", command.name(), command.description().arguments);
+    if (command.needsOutput()) line += " -o PATH";
+    return command.options().all().empty() ? line : line + " [options]";
 }
 
 std::string upperFirst(std::string_view text) {
@@ -60,19 +58,14 @@ std::string cell(std::string text) {
     return text;
 }
 
-// "lod:-o|lod:--output|mesh:-o|...": the subcommand and the word before the one to complete. (--json takes a
-// file in one subcommand and nothing in others, so the name alone would not do.)
-std::string valuePattern(const Option& option) {
+// "lod:-o|lod:--output": the subcommand and the word before the one to complete.
+std::string valuePattern(const Command& command, const Option& option) {
     std::string pattern;
-    for (const Command& command : commands()) {
-        if (!option.belongsTo(command.name)) continue;
-        std::string_view rest = option.names;
-        while (!rest.empty()) {
-            const auto comma = std::min(rest.find(','), rest.size());
-            pattern +=
-                fmt::format("{}{}:{}", pattern.empty() ? "" : "|", command.name, rest.substr(0, comma));
-            rest.remove_prefix(std::min(comma + 1, rest.size()));
-        }
+    std::string_view rest = option.names;
+    while (!rest.empty()) {
+        const auto comma = std::min(rest.find(','), rest.size());
+        pattern += fmt::format("{}{}:{}", pattern.empty() ? "" : "|", command.name(), rest.substr(0, comma));
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
     return pattern;
 }
@@ -85,28 +78,51 @@ std::string valueReply(const Option& option) {
     return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return", words);
 }
 
+struct ExitCode {
+    int code;
+    std::string_view meaning;
+};
+constexpr ExitCode kExitCodes[] = {
+    {0, "done"},
+    {1, "the work failed: a file could not be written, memory did not suffice"},
+    {2, "the command line is wrong"},
+    {3, "the input is not what it must be; one line says what was found, what was expected and what to do"},
+    {4, "check: the mesh is not closed, not 2-manifold or not oriented"},
+    {130, "interrupted (Ctrl-C); nothing was left behind"},
+};
+
+// | option | default | meaning |, one row an option.
+std::string markdownOptions(const Command& command) {
+    if (command.options().all().empty()) return {};
+    std::string text = "| option | default | meaning |\n|---|---|---|\n";
+    for (const Option& option : command.options().all())
+        text += fmt::format("| `{}` | {} | {} |\n", cell(signature(option)),
+                            cell(std::string(option.fallback)), cell(std::string(option.help)));
+    return text + "\n";
+}
+
 }  // namespace
 
-std::string overview() {
+std::string overview(const Commands& commands) {
     std::string text =
         "isowave: solids as B-spline zero sets, taken apart by wavelets; a closed mesh at every level.\n\n"
         "usage: isowave COMMAND ARGUMENTS [options]      isowave COMMAND --help      isowave --version\n\n";
     std::size_t longest = 0;
-    for (const Command& command : commands()) longest = std::max(longest, command.name.size());
-    for (const Command& command : commands())
-        text += fmt::format("  {:<{}}  {}\n", command.name, longest, command.summary);
+    for (const auto& command : commands) longest = std::max(longest, command->name().size());
+    for (const auto& command : commands)
+        text += fmt::format("  {:<{}}  {}\n", command->name(), longest, command->description().summary);
     text += "\nResults go to standard output, remarks and progress to standard error. Exit codes:\n";
-    for (const ExitCode& exit : exitCodes()) text += fmt::format("  {:>3}  {}\n", exit.code, exit.meaning);
+    for (const ExitCode& exit : kExitCodes) text += fmt::format("  {:>3}  {}\n", exit.code, exit.meaning);
     return text;
 }
 
 std::string helpFor(const Command& command) {
-    std::string text = fmt::format("usage: {}\n\n{}.\n", usage(command), upperFirst(command.summary));
-    if (!command.details.empty()) text += wrapped(command.details, 0) + "\n";
+    const Command::Description& about = command.description();
+    std::string text = fmt::format("usage: {}\n\n{}.\n", usage(command), upperFirst(about.summary));
+    if (!about.details.empty()) text += wrapped(about.details, 0) + "\n";
     text += "\n";
     constexpr std::size_t kColumn = 26;
-    for (const Option& option : options()) {
-        if (!option.belongsTo(command.name)) continue;
+    for (const Option& option : command.options().all()) {
         const std::string left = "  " + signature(option);
         text += left.size() + 2 > kColumn ? left + "\n" + std::string(kColumn, ' ')
                                           : left + std::string(kColumn - left.size(), ' ');
@@ -115,39 +131,32 @@ std::string helpFor(const Command& command) {
     return text;
 }
 
-std::string markdownHelp() {
+std::string markdownHelp(const Commands& commands) {
     std::string text;
-    for (const Command& command : commands()) {
-        text += fmt::format("### isowave {}\n\n{}.\n", command.name, upperFirst(command.summary));
-        if (!command.details.empty()) text += wrapped(command.details, 0) + "\n";
-        text += fmt::format("\n    {}\n\n", usage(command));
-        bool first = true;
-        for (const Option& option : options()) {
-            if (!option.belongsTo(command.name)) continue;
-            if (first) text += "| option | default | meaning |\n|---|---|---|\n";
-            first = false;
-            text += fmt::format("| `{}` | {} | {} |\n", cell(signature(option)),
-                                cell(std::string(option.fallback)), cell(std::string(option.help)));
-        }
-        if (!first) text += "\n";
+    for (const auto& command : commands) {
+        const Command::Description& about = command->description();
+        text += fmt::format("### isowave {}\n\n{}.\n", about.name, upperFirst(about.summary));
+        if (!about.details.empty()) text += wrapped(about.details, 0) + "\n";
+        text += fmt::format("\n    {}\n\n", usage(*command)) + markdownOptions(*command);
     }
     text += "### Exit codes\n\n| code | meaning |\n|---|---|\n";
-    for (const ExitCode& exit : exitCodes()) text += fmt::format("| {} | {} |\n", exit.code, exit.meaning);
+    for (const ExitCode& exit : kExitCodes) text += fmt::format("| {} | {} |\n", exit.code, exit.meaning);
     return text;
 }
 
-std::string bashCompletion() {
+std::string bashCompletion(const Commands& commands) {
     std::string names, offered, values;
-    for (const Command& command : commands()) {
-        names += (names.empty() ? "" : " ") + std::string(command.name);
+    for (const auto& command : commands) {
+        names += (names.empty() ? "" : " ") + std::string(command->name());
         std::string list = "--help";
-        for (const Option& option : options())
-            if (option.belongsTo(command.name)) list += " " + std::string(option.longName());
-        offered += fmt::format("        {}) offered=\"{}\" ;;\n", command.name, list);
+        for (const Option& option : command->options().all()) {
+            list += " " + std::string(option.longName());
+            if (!option.isFlag())
+                values +=
+                    fmt::format("        {}) {} ;;\n", valuePattern(*command, option), valueReply(option));
+        }
+        offered += fmt::format("        {}) offered=\"{}\" ;;\n", command->name(), list);
     }
-    for (const Option& option : options())
-        if (!option.isFlag())
-            values += fmt::format("        {}) {} ;;\n", valuePattern(option), valueReply(option));
     return fmt::format(R"(# bash completion for isowave; made by: isowave completion bash
 _isowave() {{
     local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}"

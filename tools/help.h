@@ -1,4 +1,4 @@
-// Texts made from the table of commands.h.
+// Texts made from what the commands declare.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 namespace isowave::tools {
 
 // `isowave --help`: the subcommands and the exit codes.
-std::string overview();
+std::string overview(const Commands& commands);
 
 // `isowave lod --help`.
 std::string helpFor(const Command& command);
 
 // `isowave help --markdown`: the section "Command line" of docs/interfaces.md.
-std::string markdownHelp();
+std::string markdownHelp(const Commands& commands);
 
 // `isowave completion bash`.
-std::string bashCompletion();
+std::string bashCompletion(const Commands& commands);
 
 }  // namespace isowave::tools

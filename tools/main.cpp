@@ -8,9 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "isowave/error.h"
 #include "base/heap.h"
+#include "isowave/error.h"
 #include "isowave/progress.h"
+#include "isowave/version.h"
 #include "tools/cli.h"
 #include "tools/console.h"
 #include "tools/help.h"
@@ -20,43 +21,34 @@ namespace {
 
 namespace tools = isowave::tools;
 
-// Before anything is opened: a result never takes the place of what it is made from.
-void refuseToReplaceInputs(const tools::Settings& settings) {
-    const tools::Inputs inputs(settings.files);
-    for (const auto& place : {settings.output, settings.sheet, settings.svg})
-        if (place) inputs.refuse(*place);
-    if (settings.jsonFile) inputs.refuse(*settings.jsonFile);
-}
-
-// One of them would silently take the place of the other.
-void refuseOnePlaceForTwoResults(const tools::Settings& settings) {
-    std::vector<std::filesystem::path> places;
-    for (const auto& place : {settings.output, settings.sheet, settings.svg})
-        if (place) places.push_back(*place);
-    if (settings.jsonFile && *settings.jsonFile != "-") places.emplace_back(*settings.jsonFile);
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) tools::refuseSamePlace(places[j], places[i]);
+// Before anything is opened: a result never takes the place of what it is made from, nor of another result.
+void refuseToReplace(const tools::Command& command) {
+    const tools::Inputs inputs(command.arguments);
+    const std::vector<std::filesystem::path> results = command.options().results();
+    for (const auto& place : results) inputs.refuse(place);
+    for (std::size_t i = 0; i < results.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) tools::refuseSamePlace(results[j], results[i]);
 }
 
 int run(int argc, char** argv) {
-    const tools::Invocation invocation = tools::parseCommandLine(argc, argv);
-    const tools::Settings& settings = invocation.settings;
-    tools::Console console(settings.quiet);
+    const tools::Commands commands = tools::allCommands();
+    const tools::Invocation invocation = tools::parseCommandLine(commands, argc, argv);
+    tools::Console console(invocation.command && invocation.command->quiet);
     if (!invocation.command) {
-        console.print(invocation.version ? "isowave " ISOWAVE_VERSION "\n" : tools::overview());
+        console.print(invocation.version ? "isowave " ISOWAVE_VERSION "\n" : tools::overview(commands));
         return 0;
     }
-    if (settings.help) {
-        console.print(tools::helpFor(*invocation.command));
+    tools::Command& command = *invocation.command;
+    if (invocation.help) {
+        console.print(tools::helpFor(command));
         return 0;
     }
-    refuseToReplaceInputs(settings);
-    refuseOnePlaceForTwoResults(settings);
+    refuseToReplace(command);
     std::optional<tbb::global_control> threads;
-    if (settings.threads > 0)
+    if (command.threads > 0)
         threads.emplace(tbb::global_control::max_allowed_parallelism,
-                        static_cast<std::size_t>(settings.threads));
-    const int code = invocation.command->run(settings, console);
+                        static_cast<std::size_t>(command.threads));
+    const int code = command.run(console);
     console.finish();
     return code;
 }
@@ -76,7 +68,7 @@ int main(int argc, char** argv) {
         const int code = run(argc, argv);
         if (!std::cout.flush()) return complain(1, "standard output could not be written; is the disk full?");
         return code;
-    } catch (const tools::UsageError& error) {
+    } catch (const isowave::UsageError& error) {
         return complain(2, error.what());
     } catch (const isowave::InputError& error) {
         return complain(3, error.what());

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
-#include "base/atomic_file.h"
-#include "isowave/error.h"
 #include "base/links.h"
-#include "tools/settings.h"
+#include "isowave/error.h"
 #include "isowave/image.h"
 
 namespace isowave::tools {
@@ -182,6 +182,15 @@ std::string OutputFolder::publicText(std::string message) const {
     for (std::size_t i = 0; (i = message.find(from, i)) != std::string::npos; i += to.size())
         message.replace(i, from.size(), to);
     return message;
+}
+
+void writeWhole(AtomicFile& file, const std::string& text) {
+    try {
+        file.stream() << text << std::flush;
+    } catch (const std::ios_base::failure&) {
+        throw OperationError(file.place().string(),
+                             std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
+    }
 }
 
 void writeFiles(OutputFolder& out, const std::map<std::string, std::string>& files) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
+
 namespace isowave::tools {
 
 // Makes the missing folders on the way to `folder`; removes those it made unless keep() was called.
@@ -78,6 +80,9 @@ class OutputFolder {
     std::filesystem::path hidden_;
     std::vector<std::string> names_;
 };
+
+// Into an open file, all of it: a full disk is found here. commit() is the caller's. Throws OperationError.
+void writeWhole(AtomicFile& file, const std::string& text);
 
 // Name -> bytes, into the folder. Throws OperationError when one cannot be written.
 void writeFiles(OutputFolder& out, const std::map<std::string, std::string>& files);

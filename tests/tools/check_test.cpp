@@ -10,7 +10,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json check(const fs::path& file, int exitCode) {
-    const Result result = isowave({"check", file.string(), "--json"});
+    const Result result = isowave({"check", file.string(), "--json", "-"});
     EXPECT_EQ(result.exitCode, exitCode) << result.err;
     EXPECT_EQ(result.err, "");
     return result.json();
@@ -99,7 +99,7 @@ TEST(Check, CountsPairsOfTrianglesThatIntersect) {
     writeOff(folder / "two.off", two);
     writeOff(folder / "one.off", other);
     const auto count = [&](const char* name) {
-        const Result r = isowave({"check", (folder / name).string(), "--self-intersections", "--json"});
+        const Result r = isowave({"check", (folder / name).string(), "--self-intersections", "--json", "-"});
         return r.json()["self_intersections"].get<std::int64_t>();
     };
     EXPECT_EQ(count("one.off"), 0);
@@ -129,7 +129,7 @@ TEST(Compare, MeasuresAShift) {
     writeOff(folder / "a.off", a);
     writeOff(folder / "b.off", b);
     const Json json =
-        succeed({"compare", (folder / "a.off").string(), (folder / "b.off").string(), "--json"}).json();
+        succeed({"compare", (folder / "a.off").string(), (folder / "b.off").string(), "--json", "-"}).json();
     for (const char* side : {"a_to_b", "b_to_a", "symmetric"}) {
         EXPECT_LT(json[side]["max"].get<double>(), 0.5001) << side;
         EXPECT_GT(json[side]["max"].get<double>(), 0.45) << side;
@@ -139,7 +139,7 @@ TEST(Compare, MeasuresAShift) {
     }
     EXPECT_NEAR(json["volume_difference"].get<double>(), 0, 1e-6);
     const Json self =
-        succeed({"compare", (folder / "a.off").string(), (folder / "a.off").string(), "--json"}).json();
+        succeed({"compare", (folder / "a.off").string(), (folder / "a.off").string(), "--json", "-"}).json();
     EXPECT_LT(self["symmetric"]["max"].get<double>(), 1e-9);
 }
 
@@ -152,7 +152,8 @@ TEST(Compare, TellsOneSideFromTheOther) {
     writeOff(folder / "a.off", a);
     writeOff(folder / "both.off", both);
     const Json json =
-        succeed({"compare", (folder / "a.off").string(), (folder / "both.off").string(), "--json"}).json();
+        succeed({"compare", (folder / "a.off").string(), (folder / "both.off").string(), "--json", "-"})
+            .json();
     EXPECT_LT(json["a_to_b"]["max"].get<double>(), 1e-9);
     EXPECT_GT(json["b_to_a"]["max"].get<double>(), 60);
     EXPECT_NEAR(json["volume_difference"].get<double>(), json["a"]["volume"].get<double>(), 1e-6);
@@ -164,7 +165,7 @@ TEST(Compare, BoundsTheDistanceToOnePercentAtAnySampling) {
     writeOff(folder / "b.off", torus(20, 8, 48, 24));
     for (const char* sampling : {"10", "0.5"}) {
         const Json json = succeed({"compare", (folder / "a.off").string(), (folder / "b.off").string(),
-                                   "--json", "--sampling", sampling})
+                                   "--json", "-", "--sampling", sampling})
                               .json()["symmetric"];
         EXPECT_GE(json["max_bound"].get<double>(), json["max"].get<double>()) << sampling;
         EXPECT_LE(json["max_bound"].get<double>(), 1.0101 * json["max"].get<double>()) << sampling;

@@ -1,10 +1,8 @@
-// isowave lod on small inputs of every kind: files, report, defaults, determinism.
+// isowave lod on small inputs: files, report, talk, determinism. What levels are like is tested in tests/lod.
 #include <set>
 
 #include "tests/tools/inputs.h"
 #include "tests/tools/run_isowave.h"
-#include "wavelets/pyramid.h"
-#include "wavelets/pyramid_file.h"
 
 namespace isowave::tools_test {
 namespace {
@@ -63,25 +61,55 @@ TEST_F(BallLadder, PutsOneMeshALevelAndAReportIntoItsFolder) {
 TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     ladder({});
     const Json r = report();
-    EXPECT_EQ(keysOf(r),
-              (std::set<std::string>{"version", "input", "fit", "K", "levels", "budgets", "steps", "coefficients_stored",
-                                     "control_points", "seconds", "peak_memory_bytes", "threads"}));
+    EXPECT_EQ(keysOf(r), (std::set<std::string>{"version", "input", "fit", "K", "levels", "budgets", "steps",
+                                                "coefficients_stored", "control_points", "seconds",
+                                                "peak_memory_bytes", "threads"}));
     EXPECT_EQ(keysOf(r["input"]), (std::set<std::string>{"path", "kind", "format", "component_type",
                                                          "dimensions", "spacing", "range", "iso", "inverted",
                                                          "open_border", "origin", "direction", "space"}));
-    EXPECT_EQ(keysOf(r["fit"]), (std::set<std::string>{"method", "half_width", "band", "lattice_points",
-                                                       "disagreeing", "repair_passes", "repaired", "repair_floor", "stopped"}));
+    EXPECT_EQ(keysOf(r["fit"]),
+              (std::set<std::string>{"method", "half_width", "band", "lattice_points", "disagreeing",
+                                     "repair_passes", "repaired", "repair_floor", "stopped"}));
     for (const Json& level : r["levels"])
-        EXPECT_EQ(keysOf(level),
-                  (std::set<std::string>{"step", "level", "file", "spacing", "control_points", "nodes",
-                                         "leaf_occupancy", "memory_bytes",
-                                         "vertices", "triangles", "components", "genus", "closed", "manifold",
-                                         "volume", "area", "parts", "cavities", "specks_removed",
-                                         "speck_volume", "bubbles_removed", "bubble_volume", "iso_shift",
-                                         "iso_distance", "volume_at_iso_0", "volume_error", "thin_kept",
-                                         "thin_kept_at_iso_0", "features", "change", "refine", "sampling", "rms_to_level0",
-                                         "max_to_level0", "rms_from_level0", "max_from_level0", "max_deviation",
-                                         "rms_deviation", "seconds"}));
+        EXPECT_EQ(keysOf(level), (std::set<std::string>{"step",
+                                                        "level",
+                                                        "file",
+                                                        "spacing",
+                                                        "control_points",
+                                                        "nodes",
+                                                        "leaf_occupancy",
+                                                        "memory_bytes",
+                                                        "vertices",
+                                                        "triangles",
+                                                        "components",
+                                                        "genus",
+                                                        "closed",
+                                                        "manifold",
+                                                        "volume",
+                                                        "area",
+                                                        "parts",
+                                                        "cavities",
+                                                        "specks_removed",
+                                                        "speck_volume",
+                                                        "bubbles_removed",
+                                                        "bubble_volume",
+                                                        "iso_shift",
+                                                        "iso_distance",
+                                                        "volume_at_iso_0",
+                                                        "volume_error",
+                                                        "thin_kept",
+                                                        "thin_kept_at_iso_0",
+                                                        "features",
+                                                        "change",
+                                                        "refine",
+                                                        "sampling",
+                                                        "rms_to_level0",
+                                                        "max_to_level0",
+                                                        "rms_from_level0",
+                                                        "max_from_level0",
+                                                        "max_deviation",
+                                                        "rms_deviation",
+                                                        "seconds"}));
     EXPECT_EQ(r["version"], 1);
     EXPECT_EQ(r["input"]["kind"], "grey image");
     EXPECT_EQ(r["input"]["dimensions"], Json({32, 32, 32}));
@@ -98,27 +126,6 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     EXPECT_LE(occupancy, 1);
     EXPECT_GT(finest["memory_bytes"].get<double>(), 4 * points / occupancy);
     EXPECT_GE(r["seconds"]["total"].get<double>(), r["seconds"]["analyse"].get<double>());
-}
-
-TEST_F(BallLadder, MeasuresTheBall) {
-    ladder({});
-    const Json levels = report()["levels"];
-    const double volume = 4.0 / 3.0 * kPi * std::pow(4.5, 3),
-                 area = 4 * kPi * 4.5 * 4.5;  // 9 voxels of 0.5 mm
-    const Json& finest = levels[0];
-    EXPECT_NEAR(finest["volume"].get<double>(), volume, 0.02 * volume);
-    EXPECT_NEAR(finest["area"].get<double>(), area, 0.02 * area);
-    EXPECT_EQ(finest["components"], 1);
-    EXPECT_EQ(finest["genus"], 0);
-    EXPECT_EQ(finest["closed"], true);
-    EXPECT_EQ(finest["manifold"], true);
-    EXPECT_EQ(finest["rms_to_level0"], 0.0);
-    EXPECT_EQ(finest["spacing"], Json({0.5, 0.5, 0.5}));
-    EXPECT_EQ(levels[1]["spacing"], Json({1.0, 1.0, 1.0}));
-    EXPECT_GT(levels[1]["rms_to_level0"].get<double>(), 0);
-    EXPECT_LT(levels[1]["rms_to_level0"].get<double>(), 0.15 * 0.5);
-    EXPECT_GE(levels[1]["max_to_level0"].get<double>(), levels[1]["rms_to_level0"].get<double>());
-    EXPECT_LT(levels[1]["triangles"].get<double>(), 0.4 * levels[0]["triangles"].get<double>());
 }
 
 TEST_F(BallLadder, WritesTheLevelsThatWereAskedFor) {
@@ -144,7 +151,8 @@ TEST_F(BallLadder, WritesEveryFormat) {
                   (std::set<std::string>{format + "_L0." + format, format + "_L1." + format, "report.json"}));
         if (format == "glb") continue;  // the one format that isowave does not read
         const Json check =
-            succeed({"check", (folder / ("out/" + format) / (format + "_L0." + format)).string(), "--json"})
+            succeed(
+                {"check", (folder / ("out/" + format) / (format + "_L0." + format)).string(), "--json", "-"})
                 .json();
         EXPECT_EQ(check["triangles"], report("out/" + format)["levels"][0]["triangles"]) << format;
         EXPECT_NEAR(check["volume"].get<double>(),
@@ -188,17 +196,6 @@ TEST_F(BallLadder, TalksOnStandardErrorAndIsQuietWhenAsked) {
     EXPECT_EQ(quiet.out, loud.out);
 }
 
-TEST_F(BallLadder, TurnsInsideOutWhenInverted) {
-    ladder({"--levels", "0"});
-    ladder({"--levels", "0", "--invert"}, "out/hollow");
-    const double whole =
-        15.5 * 15.5 * 15.5;  // the image, corner voxel to corner voxel; its cap lies around it
-    const double ball = report()["levels"][0]["volume"].get<double>();
-    const double hollow = report("out/hollow")["levels"][0]["volume"].get<double>();
-    EXPECT_NEAR(ball + hollow, whole, 0.15 * whole);
-    EXPECT_EQ(report("out/hollow")["levels"][0]["components"], 2);
-}
-
 TEST_F(BallLadder, ReplacesAnEarlierLadderAndLeavesOtherFilesAlone) {
     ladder({"--levels", "0"});
     std::ofstream(folder / "out/ball/notes.txt") << "mine";
@@ -228,22 +225,6 @@ TEST_F(BallLadder, EndsWhereTheSolidVanishes) {
 
 // ---- kinds of images ----
 
-TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
-    const Folder folder;
-    const Size size{36, 36, 20};
-    writeNrrd(folder / "ring.nrrd", size, ringAndBall(size, 10, 4, false));
-    const Result result = succeed({"lod", (folder / "ring.nrrd").string(), "-o", (folder / "ring").string()});
-    EXPECT_NE(result.err.find("a mask, iso 0.5"), std::string::npos) << result.err;
-    const Json report = jsonFile(folder / "ring/report.json");
-    EXPECT_EQ(report["input"]["kind"], "mask");
-    EXPECT_EQ(report["input"]["iso"], 0.5);
-    EXPECT_EQ(report["fit"]["method"], "binary");
-    EXPECT_EQ(report["fit"]["stopped"], "agreed");
-    EXPECT_EQ(report["fit"]["repair_floor"], 0.05);
-    EXPECT_EQ(report["fit"]["filter_passes"], 3);
-    EXPECT_EQ(report["levels"][0]["genus"], 1);
-}
-
 // 256 x 256 x 400 voxels: 26 MB as a file, 105 MB as floats.
 TEST(LargeImage, IsNeverInMemoryAsAWholeAndGivesTheSameForEveryNumberOfThreads) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -265,28 +246,6 @@ TEST(LargeImage, IsNeverInMemoryAsAWholeAndGivesTheSameForEveryNumberOfThreads) 
         if (first.empty()) first = mesh;
         EXPECT_EQ(mesh, first) << threads;
     }
-}
-
-TEST(Labels, AreTakenTogetherOrOneByOne) {
-    const Folder folder;
-    const Size size{36, 36, 20};
-    writeNrrd(folder / "labels.nrrd", size, ringAndBall(size, 10, 4, true));
-    const auto components = [&](const Arguments& more) {
-        Arguments arguments{
-            "lod", (folder / "labels.nrrd").string(), "--levels", "0", "-o", (folder / "o").string()};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        succeed(arguments);
-        return jsonFile(folder / "o/report.json");
-    };
-    const Json all = components({}), ring = components({"--label", "1"}), ball = components({"--label", "2"});
-    EXPECT_EQ(all["levels"][0]["components"], 2);
-    EXPECT_EQ(all["input"]["kind"], "labels");
-    EXPECT_EQ(ring["levels"][0]["components"], 1);
-    EXPECT_EQ(ring["levels"][0]["genus"], 1);
-    EXPECT_EQ(ball["levels"][0]["genus"], 0);
-    EXPECT_EQ(ball["input"]["label"], 2.0);
-    EXPECT_EQ(ring["fit"]["method"], "binary");
-    EXPECT_EQ(components({"--label", "1", "--fit", "distance"})["fit"]["method"], "distance");
 }
 
 TEST(Headerless, ImagesAreReadAsTheOptionsSay) {
@@ -340,75 +299,12 @@ TEST(Space, RasNegatesXAndY) {
     EXPECT_NEAR(ras[1], -49.5, 0.05);
     // Read again, both lie where the image does.
     const Json same = succeed({"compare", (folder / "lps/lps_L0.obj").string(),
-                               (folder / "ras/ras_L0.obj").string(), "--json"})
+                               (folder / "ras/ras_L0.obj").string(), "--json", "-"})
                           .json();
     EXPECT_LT(same["symmetric"]["max"].get<double>(), 1e-4);
 }
 
-TEST(OpenBorder, LeavesTheCapOutAlsoWhenItComesFromAPyramid) {
-    const Folder folder;
-    const Size size{20, 24, 24};
-    // A rod along x through the whole image.
-    writeNrrd(folder / "rod.nrrd", size,
-              sampled<float>(size, [](int, int y, int z) { return 8 - std::hypot(y - 11.3, z - 12.1); }),
-              "space: left-posterior-superior\nspace directions: (0,2,0) (-2,0,0) (0,0,2)\nspace origin: "
-              "(5,6,7)\n");
-    const std::string rod = (folder / "rod.nrrd").string(), pyramid = (folder / "rod.vdb").string();
-    succeed({"lod", rod, "--iso", "0", "--levels", "0..1", "-o", (folder / "capped").string()});
-    succeed(
-        {"lod", rod, "--iso", "0", "--levels", "0..1", "--open-border", "-o", (folder / "open").string()});
-    succeed({"analyse", rod, "--iso", "0", "--open-border", "-o", pyramid});
-    succeed({"lod", pyramid, "--levels", "0..1", "-o", (folder / "again").string()});
-    EXPECT_EQ(jsonFile(folder / "capped/report.json")["levels"][0]["closed"], true);
-    const double tube = 2 * kPi * 16 * 38;  // radius 8 and length 19 voxels of 2 mm
-    for (const char* name : {"open", "again"}) {
-        const Json levels = jsonFile(folder / name / "report.json")["levels"];
-        for (const Json& level : levels) {
-            EXPECT_EQ(level["closed"], false) << name;
-            EXPECT_EQ(level["manifold"], true) << name;
-            EXPECT_EQ(level["genus"], nullptr) << name;
-            EXPECT_NEAR(level["area"].get<double>(), tube, 0.03 * tube) << name;
-        }
-    }
-}
-
 // ---- meshes ----
-
-TEST(MeshLadder, KeepsTheHoleOfATorusAtLevelZero) {
-    const Folder folder;
-    writeStl(folder / "torus.stl", torus(20, 8));
-    const Result result = succeed(
-        {"lod", (folder / "torus.stl").string(), "--voxels", "48", "-o", (folder / "torus").string()});
-    const Json report = jsonFile(folder / "torus/report.json");
-    EXPECT_EQ(report["input"]["kind"], "mesh");
-    EXPECT_EQ(report["fit"]["method"], "distance");
-    EXPECT_EQ(report["fit"]["half_width"], 4.0);
-    EXPECT_EQ(report["fit"]["band"], 2.0);
-    const double volume = 2 * kPi * kPi * 20 * 64;
-    EXPECT_EQ(report["levels"][0]["genus"], 1);
-    EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), volume,
-                0.03 * volume);  // the polyhedron is smaller
-    EXPECT_EQ(contentOf(folder / "torus/torus_L0.ply").find("SPACE="), std::string::npos)
-        << "a CAD mesh has no axes";
-}
-
-TEST(MeshLadder, TakesTheVoxelSizeOrTheCountOrADefaultThatItNames) {
-    const Folder folder;
-    writeStl(folder / "torus.stl", torus(20, 8));
-    const auto spacing = [&](const Arguments& more) {
-        Arguments arguments{"lod", (folder / "torus.stl").string(), "--levels", "2",
-                            "-o",  (folder / "o").string()};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const Result result = succeed(arguments);
-        if (more.empty()) {
-            EXPECT_NE(result.err.find("--voxels 256"), std::string::npos) << result.err;
-        }
-        return jsonFile(folder / "o/report.json")["input"]["spacing"][0].get<double>();
-    };
-    EXPECT_DOUBLE_EQ(spacing({"--voxel", "1.5"}), 1.5);
-    EXPECT_NEAR(spacing({"--voxels", "28"}), 2.0, 1e-6);
-    EXPECT_NEAR(spacing({}), 56.0 / 256, 1e-6);
-}
 
 TEST(MeshLadder, KeepsTheAxesThatAMeshNames) {
     const Folder folder;
@@ -418,7 +314,7 @@ TEST(MeshLadder, KeepsTheAxesThatAMeshNames) {
     EXPECT_EQ(jsonFile(folder / "o/report.json")["input"]["space"], "ras");
     EXPECT_NE(contentOf(folder / "o/o_L0.ply").find("SPACE=RAS"), std::string::npos);
     const Json same =
-        succeed({"compare", (folder / "ras.ply").string(), (folder / "o/o_L0.ply").string(), "--json"})
+        succeed({"compare", (folder / "ras.ply").string(), (folder / "o/o_L0.ply").string(), "--json", "-"})
             .json();
     EXPECT_LT(same["symmetric"]["rms"].get<double>(), 0.5);
 }
@@ -435,30 +331,6 @@ TEST(MeshLadder, LiftsTheMemoryLimitWhenTold) {
     };
     EXPECT_EQ(with("0.001"), 3);
     EXPECT_EQ(with("8"), 0);
-}
-
-// ---- endings ----
-
-TEST(CutPyramid, EndsTheLadderWithoutClaimingThatOneNodeIsLeft) {
-    const Folder folder;
-    const Size size{32, 32, 32};
-    writeNrrd(folder / "ball.nrrd", size, greyBall(size, 9));
-    succeed(
-        {"analyse", (folder / "ball.nrrd").string(), "--iso", "0", "-o", (folder / "whole.vdb").string()});
-    const auto lod = [&](const char* name) {
-        return succeed({"lod", (folder / name).string(), "--levels", "0..40", "-o", (folder / "o").string()})
-            .err;
-    };
-    const std::string whole = lod("whole.vdb");
-    EXPECT_NE(whole.find("one node is left; the ladder ends at step"), std::string::npos) << whole;
-
-    const wavelets::Pyramid pyramid = wavelets::readPyramid(folder / "whole.vdb");
-    wavelets::Pyramid cut = wavelets::analyse(pyramid.field(0), {.maxSteps = 2});
-    ASSERT_GT(cut.coarsest.controlPointCount(), 64);
-    wavelets::writePyramid(folder / "cut.vdb", cut);
-    const std::string early = lod("cut.vdb");
-    EXPECT_EQ(early.find("one node"), std::string::npos) << early;
-    EXPECT_NE(early.find("the ladder ends at step 2"), std::string::npos) << early;
 }
 
 }  // namespace

@@ -60,11 +60,11 @@ void roughen(const fs::path& from, const fs::path& to) {
 
 TEST(Reverse, TakesACarApartAndRebuildPutsItBack) {
     const Folder folder;
-    succeed({"subdivide", kCages + "catmark_car.obj", "--levels", "2", "-o", in(folder, "smooth.obj"),
-             "--quiet"});
+    succeed(
+        {"subdivide", kCages + "catmark_car.obj", "--depth", "2", "-o", in(folder, "smooth.obj"), "--quiet"});
     roughen(folder / "smooth.obj", folder / "fine.obj");
-    const auto report = succeed({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--levels",
-                                 "2", "--details", in(folder, "car.details"), "--json"})
+    const auto report = succeed({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--depth",
+                                 "2", "--details", in(folder, "car.details"), "--json", "-"})
                             .json();
     EXPECT_EQ(report["levels"][0]["vertices"], 1642);
     EXPECT_EQ(report["creases"], 314);
@@ -77,86 +77,21 @@ TEST(Reverse, TakesACarApartAndRebuildPutsItBack) {
     EXPECT_EQ(fine.faces, back.faces) << "the same faces in the same order";
     // A level between, in another format.
     const auto middle = succeed({"rebuild", in(folder, "base.obj"), "--details", in(folder, "car.details"),
-                                 "--levels", "1", "-o", in(folder, "new/middle.ply"), "--json"})
+                                 "--depth", "1", "-o", in(folder, "new/middle.ply"), "--json", "-"})
                             .json();
     EXPECT_EQ(middle["vertices"], report["levels"][1]["vertices"]);
     EXPECT_TRUE(fs::exists(folder / "new/middle.ply"));
-}
-
-TEST(Reverse, FindsACageAgain) {
-    const Folder folder;
-    for (const char* cage : {"catmark_rook.obj", "catmark_torus.obj"}) {
-        succeed({"subdivide", kCages + cage, "--levels", "2", "-o", in(folder, "fine.off")});
-        succeed(
-            {"reverse", in(folder, "fine.off"), "-o", in(folder, "base.obj"), "--levels", "2", "--quiet"});
-        EXPECT_LT(largestDifference(readObj(kCages + cage), readObj(folder / "base.obj")), 1e-12) << cage;
-    }
-}
-
-TEST(Rebuild, FollowsAnEditAndLeavesDetailsOut) {
-    const Folder folder;
-    succeed({"subdivide", kCages + "catmark_torus.obj", "--levels", "3", "-o", in(folder, "smooth.obj")});
-    roughen(folder / "smooth.obj", folder / "fine.obj");
-    const std::string base = in(folder, "base.obj"), details = in(folder, "d"), out = in(folder, "out.obj");
-    succeed({"reverse", in(folder, "fine.obj"), "-o", base, "--levels", "3", "--details", details,
-             "--variant", "tensor"});
-    // Turned by 90 degrees about z: local frames give the mesh turned, global ones something else.
-    std::istringstream lines(contentOf(base));
-    std::ofstream edited(folder / "edited.obj");
-    for (std::string line; std::getline(lines, line);) {
-        double x = 0, y = 0, z = 0;
-        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) {
-            edited << line << "\n";
-            continue;
-        }
-        char text[120];
-        std::snprintf(text, sizeof text, "v %.17g %.17g %.17g\n", -y, x, z);
-        edited << text;
-    }
-    edited.close();
-    Obj expected = readObj(folder / "fine.obj");
-    for (std::size_t i = 0; i < expected.points.size(); i += 3) {
-        std::swap(expected.points[i], expected.points[i + 1]);
-        expected.points[i] = -expected.points[i];
-    }
-    const std::vector<std::string> command{"rebuild", base, "--details", details,
-                                           "-o",      out,  "--edited",  in(folder, "edited.obj")};
-    auto local = command;
-    local.insert(local.end(), {"--frames", "local"});
-    succeed(local);
-    EXPECT_LT(largestDifference(expected, readObj(out)), 1e-12);
-    succeed(command);
-    EXPECT_GT(largestDifference(expected, readObj(out)), 1e-4);
-
-    const auto part =
-        succeed({"rebuild", base, "--details", details, "-o", out, "--keep", "100", "--table", "--json"})
-            .json();
+    // The options reach rebuild(); what they do is tested there.
+    const auto part = succeed({"rebuild", in(folder, "base.obj"), "--details", in(folder, "car.details"),
+                               "-o", in(folder, "part.obj"), "--edited", in(folder, "base.obj"), "--frames",
+                               "local", "--keep", "100", "--error-table", "--json", "-"})
+                          .json();
     EXPECT_EQ(part["kept"], 100);
-    EXPECT_GT(part["error"]["rms"], 0);
     EXPECT_EQ(part["shares"].size(), 7u);
-    EXPECT_LT(part["shares"][6]["error"]["rms"], part["shares"][0]["error"]["rms"]);
-    EXPECT_THAT(succeed({"rebuild", base, "--details", details, "-o", out, "--threshold", "0.0005"}).out,
+    EXPECT_THAT(succeed({"rebuild", in(folder, "base.obj"), "--details", in(folder, "car.details"), "-o",
+                         in(folder, "part.obj"), "--threshold", "0.0005"})
+                    .out,
                 HasSubstr("without the others rms"));
-}
-
-TEST(Reverse, TakesTrianglesApartToo) {
-    const Folder folder;
-    const std::string icosahedron = in(folder, "a.off");
-    std::ofstream(icosahedron)
-        << "OFF\n4 4 0\n1 1 1\n1 -1 -1\n-1 1 -1\n-1 -1 1\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n";
-    for (const char* scheme : {"loop", "butterfly"}) {
-        succeed(
-            {"subdivide", icosahedron, "--levels", "3", "--scheme", scheme, "-o", in(folder, "fine.obj")});
-        const auto report =
-            succeed({"reverse", in(folder, "fine.obj"), "--scheme", scheme, "-o", in(folder, "base.obj"),
-                     "--levels", "2", "--details", in(folder, "d"), "--json"})
-                .json();
-        EXPECT_LT(report["levels"][0]["detail_largest"], 1e-12) << scheme;
-        succeed(
-            {"rebuild", in(folder, "base.obj"), "--details", in(folder, "d"), "-o", in(folder, "back.obj")});
-        EXPECT_LT(largestDifference(readObj(folder / "fine.obj"), readObj(folder / "back.obj")), 1e-12)
-            << scheme;
-    }
 }
 
 TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
@@ -164,8 +99,8 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
     const std::string car = kCages + "catmark_car.obj", torus = kCages + "catmark_torus.obj";
     const std::string fine = in(folder, "fine.obj"), base = in(folder, "base.obj"),
                       details = in(folder, "torus.details"), out = in(folder, "out.obj");
-    succeed({"subdivide", torus, "--levels", "1", "-o", fine});
-    succeed({"reverse", fine, "-o", base, "--levels", "1", "--details", details, "--quiet"});
+    succeed({"subdivide", torus, "--depth", "1", "-o", fine});
+    succeed({"reverse", fine, "-o", base, "--depth", "1", "--details", details, "--quiet"});
     const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
     std::ofstream(folder / "fin.obj") << quad << "f 1 2 3 4\nf 2 5 6 3\nf 2 3 4\n";
     std::ofstream(folder / "mixed.obj") << quad << "f 1 2 3 4\nf 2 3 6 5\n";
@@ -186,9 +121,9 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
         {{"reverse", in(folder, "fin.obj"), "-o", out}, 3, "more than two faces"},
         {{"reverse", in(folder, "mixed.obj"), "-o", out}, 3, "mixed orientation"},
         {{"reverse", in(folder, "flat.obj"), "-o", out}, 3, "1 face is degenerate"},
-        {{"reverse", in(folder, "text.obj"), "-o", out}, 3, "line 1: 'zero' is not a coordinate"},
+        {{"reverse", in(folder, "text.obj"), "-o", out}, 3, "line 1: 'zero' is not a number"},
         {{"reverse", car, "-o", out}, 3, "no Catmull-Clark connectivity: vertex"},
-        {{"reverse", fine, "-o", out, "--levels", "9"}, 3, "but not for 9"},
+        {{"reverse", fine, "-o", out, "--depth", "9"}, 3, "but not for 9"},
         {{"reverse", fine, "-o", out, "--scheme", "doo-sabin"}, 3, "they are catmull-clark, loop, butterfly"},
         {{"reverse", fine, "-o", out, "--variant", "best"}, 3, "they are refined, trial"},
         {{"reverse", fine, "-o", in(folder, "out.stl")}, 3, ".obj .off .ply"},
@@ -206,14 +141,14 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
         {{"rebuild", car, "--details", details, "-o", out}, 3, "another connectivity"},
         {{"rebuild", in(folder, "moved.obj"), "--details", details, "-o", out}, 3, "--edited"},
         {{"rebuild", base, "--details", details, "--edited", fine, "-o", out}, 3, "another connectivity"},
-        {{"rebuild", base, "--details", details, "--levels", "5", "-o", out}, 3, "holds details for 1 level"},
+        {{"rebuild", base, "--details", details, "--depth", "5", "-o", out}, 3, "holds details for 1 level"},
         {{"rebuild", base, "--details", details, "--frames", "local", "-o", out}, 2, "--edited"},
         {{"rebuild", base, "--details", details, "--keep", "1", "--threshold", "1", "-o", out},
          2,
          "one of them"},
         {{"subdivide", in(folder, "mixed.obj"), "-o", out}, 3, "mixed orientation"},
         {{"subdivide", torus, "--scheme", "loop", "-o", out}, 3, "triangle"},
-        {{"subdivide", torus, "--levels", "99", "-o", out}, 2, "--levels"},
+        {{"subdivide", torus, "--depth", "99", "-o", out}, 2, "--depth"},
         {{"subdivide", torus, "-o", in(folder, "fine.obj/out.obj")}, 1, "cannot make this folder"},
     };
     for (const auto& each : cases) {
@@ -229,7 +164,7 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
 // Whatever is cut off or changed in an input, the answer is a mesh or one line.
 TEST(MeshHierarchyCommands, SurviveDamagedFiles) {
     const Folder folder;
-    succeed({"subdivide", kCages + "catmark_torus.obj", "--levels", "1", "-o", in(folder, "fine.ply")});
+    succeed({"subdivide", kCages + "catmark_torus.obj", "--depth", "1", "-o", in(folder, "fine.ply")});
     succeed({"reverse", in(folder, "fine.ply"), "-o", in(folder, "base.obj"), "--details", in(folder, "d"),
              "--quiet"});
     for (const char* name : {"fine.ply", "d"}) {
@@ -250,11 +185,11 @@ TEST(MeshHierarchyCommands, SurviveDamagedFiles) {
 
 TEST(Reverse, OnAFullDiskLeavesNothing) {
     const Folder folder;
-    succeed({"subdivide", kCages + "catmark_rook.obj", "--levels", "1", "-o", in(folder, "fine.obj")});
+    succeed({"subdivide", kCages + "catmark_rook.obj", "--depth", "1", "-o", in(folder, "fine.obj")});
     const auto before = folder.snapshot();
     RunOptions full;
     full.largestFile = 20'000;
-    const auto result = isowave({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--levels",
+    const auto result = isowave({"reverse", in(folder, "fine.obj"), "-o", in(folder, "base.obj"), "--depth",
                                  "1", "--details", in(folder, "d")},
                                 full);
     EXPECT_EQ(result.exitCode, 1);

@@ -20,22 +20,6 @@ class TorusPyramid : public ::testing::Test {
     Folder folder;
 };
 
-TEST_F(TorusPyramid, GivesTheMeshesThatLodGives) {
-    succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "--steps", "0..4", "-o",
-             (folder / "direct").string()});
-    const Json direct = jsonFile(folder / "direct/report.json");
-    for (int step = 0; step <= 4; ++step) {
-        const fs::path file = folder / ("step" + std::to_string(step) + ".ply");
-        succeed({"mesh", pyramid(), "--step", std::to_string(step), "-o", file.string()});
-        const Json check = succeed({"check", file.string(), "--json"}).json();
-        const Json& level = direct["levels"][step];
-        EXPECT_EQ(check["triangles"], level["triangles"]) << step;
-        EXPECT_EQ(check["genus"], level["genus"]) << step;
-        const double volume = level["volume"].get<double>();
-        EXPECT_NEAR(check["volume"].get<double>(), volume, 1e-5 * volume) << step;
-    }
-}
-
 TEST_F(TorusPyramid, IsAnInputOfLodLikeTheSolidItself) {
     succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "-o", (folder / "direct").string()});
     succeed({"lod", pyramid(), "-o", (folder / "again").string()});
@@ -82,7 +66,7 @@ TEST_F(TorusPyramid, GivesItsFieldAsAGridForOtherTools) {
     file.open();
     const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("field"));
     ASSERT_TRUE(grid);
-    const Json info = succeed({"info", pyramid(), "--json"}).json();
+    const Json info = succeed({"info", pyramid(), "--json", "-"}).json();
     EXPECT_EQ(grid->activeVoxelCount(), info["control_points"].get<std::uint64_t>());
     const auto centreOfTube = grid->transform().worldToIndex({20, 0, 0});
     EXPECT_LT(grid->tree().getValue(openvdb::Coord::round(centreOfTube)), 0) << "negative inside";
@@ -93,7 +77,7 @@ TEST_F(TorusPyramid, IsListedStepByStep) {
     const Result text = succeed({"info", pyramid()});
     EXPECT_NE(text.out.find("coefficients stored for"), std::string::npos);
     EXPECT_NE(text.out.find("bytes a control point"), std::string::npos);
-    const Json info = succeed({"info", pyramid(), "--json"}).json();
+    const Json info = succeed({"info", pyramid(), "--json", "-"}).json();
     EXPECT_EQ(info["kind"], "pyramid");
     EXPECT_EQ(info["format_version"], 1);
     const Json& steps = info["steps"];
@@ -120,7 +104,7 @@ TEST_F(TorusPyramid, IsListedStepByStep) {
     EXPECT_EQ(steps.back()["nodes"], 1);
 }
 
-// ---- level sets ----
+// ---- info of other files ----
 
 openvdb::FloatGrid::Ptr ballLevelSet(double radius) {
     openvdb::initialize();
@@ -140,64 +124,13 @@ openvdb::FloatGrid::Ptr ballLevelSet(double radius) {
     return grid;
 }
 
-TEST(LevelSet, IsInsideWhereItIsNegative) {
-    const Folder folder;
-    openvdb::io::File((folder / "ball.vdb").string()).write({ballLevelSet(10)});
-    const Result result =
-        succeed({"lod", (folder / "ball.vdb").string(), "--levels", "0", "-o", (folder / "o").string()});
-    EXPECT_NE(result.err.find("iso 0"), std::string::npos) << result.err;
-    const Json report = jsonFile(folder / "o/report.json");
-    EXPECT_EQ(report["input"]["kind"], "level set");
-    EXPECT_EQ(report["input"]["iso"], 0.0);
-    EXPECT_EQ(report["fit"]["method"], "distance");
-    const double volume = 4.0 / 3.0 * std::acos(-1.0) * 1000;
-    EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), volume, 0.01 * volume);
-
-    succeed({"lod", (folder / "ball.vdb").string(), "--iso", "1", "--levels", "0", "-o",
-             (folder / "p").string()});
-    const double larger = 4.0 / 3.0 * std::acos(-1.0) * 1331;
-    EXPECT_NEAR(jsonFile(folder / "p/report.json")["levels"][0]["volume"].get<double>(), larger,
-                0.01 * larger);
-    succeed({"lod", (folder / "ball.vdb").string(), "--fit", "binary", "--levels", "0", "-o",
-             (folder / "b").string()});
-    EXPECT_NEAR(jsonFile(folder / "b/report.json")["levels"][0]["volume"].get<double>(), volume,
-                0.05 * volume);
-}
-
-TEST(LevelSet, WithPositiveInsideIsReadWithInvert) {
-    const Folder folder;
-    auto grid = ballLevelSet(10);
-    for (auto value = grid->beginValueAll(); value; ++value) value.setValue(-*value);
-    grid->tree().root().setBackground(-3.0f, false);
-    openvdb::io::File((folder / "positive.vdb").string()).write({grid});
-    openvdb::io::File((folder / "negative.vdb").string()).write({ballLevelSet(10)});
-    const auto lod = [&](const char* name, std::vector<std::string> more) {
-        std::vector<std::string> arguments{"lod", (folder / name).string(), "--levels", "0",
-                                           "-o",  (folder / "o").string()};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return isowave(arguments);
-    };
-    ASSERT_EQ(lod("positive.vdb", {"--invert", "--iso", "-1"}).exitCode, 0);
-    const double inverted = jsonFile(folder / "o/report.json")["levels"][0]["volume"].get<double>();
-    ASSERT_EQ(lod("negative.vdb", {"--iso", "1"}).exitCode, 0);
-    EXPECT_EQ(jsonFile(folder / "o/report.json")["levels"][0]["volume"].get<double>(), inverted);
-    // The other two would be everything but a ball, without end.
-    for (const Result& result : {lod("positive.vdb", {}), lod("negative.vdb", {"--invert"})}) {
-        EXPECT_EQ(result.exitCode, 3);
-        EXPECT_NE(result.err.find("finite"), std::string::npos) << result.err;
-        EXPECT_EQ(result.errorLines(), 1) << result.err;
-    }
-}
-
-// ---- info of other files ----
-
 TEST(Info, DescribesAnImage) {
     const Folder folder;
     const Size size{24, 20, 16};
     writeNrrd(folder / "a.nrrd", size, greyBall(size, 5),
               "space: left-posterior-superior\nspace directions: (0,2,0) (-1,0,0) (0,0,3)\nspace origin: "
               "(5,6,7)\n");
-    const Json info = succeed({"info", (folder / "a.nrrd").string(), "--json"}).json();
+    const Json info = succeed({"info", (folder / "a.nrrd").string(), "--json", "-"}).json();
     EXPECT_EQ(info["kind"], "image");
     EXPECT_EQ(info["component_type"], "int16");
     EXPECT_EQ(info["dimensions"], Json({24, 20, 16}));
@@ -212,7 +145,7 @@ TEST(Info, DescribesAnImage) {
 TEST(Info, DescribesAMesh) {
     const Folder folder;
     writeStl(folder / "torus.stl", torus(20, 8));
-    const Json info = succeed({"info", (folder / "torus.stl").string(), "--json"}).json();
+    const Json info = succeed({"info", (folder / "torus.stl").string(), "--json", "-"}).json();
     EXPECT_EQ(info["kind"], "mesh");
     EXPECT_EQ(info["triangles"], 2 * 48 * 24);
     EXPECT_EQ(info["vertices"], 48 * 24);
@@ -224,7 +157,7 @@ TEST(Info, DescribesAMesh) {
 TEST(Info, ListsTheGridsOfAVdb) {
     const Folder folder;
     openvdb::io::File((folder / "ball.vdb").string()).write({ballLevelSet(6)});
-    const Json info = succeed({"info", (folder / "ball.vdb").string(), "--json"}).json();
+    const Json info = succeed({"info", (folder / "ball.vdb").string(), "--json", "-"}).json();
     EXPECT_EQ(info["kind"], "vdb");
     ASSERT_EQ(info["grids"].size(), 1u);
     EXPECT_EQ(info["grids"][0]["name"], "ball");

@@ -1,0 +1,99 @@
+// A subcommand of `isowave`: what it is called, which options it takes, what it does. It declares its own options, into
+// variables of its own; parser (cli.h), `--help`, the markdown of docs/interfaces.md and the shell completion (help.h) are all
+// made from that declaration, so an option that no command declares does not exist.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isowave::tools {
+
+class Console;
+
+struct Option {
+    std::string_view names;     // "--iso" or "-o,--output"
+    std::string_view metavar;   // what follows it: "V", "FILE", "stl|ply|obj" (a choice); empty: a flag
+    std::string_view fallback;  // what holds without it, in words; empty: nothing to say
+    std::string_view help;
+    // Takes the value (empty for a flag). Throws UsageError without naming the option.
+    std::function<void(const std::string& value)> apply;
+
+    bool isFlag() const { return metavar.empty(); }
+    bool isChoice() const { return metavar.find('|') != metavar.npos; }
+    bool takesFile() const { return metavar == "FILE" || metavar == "PATH"; }
+    std::string_view longName() const { return names.substr(names.find("--")); }
+};
+
+// Ways to declare an option; `help` and `fallback` must outlive the program's parsing (literals do).
+class OptionList {
+  public:
+    void value(std::string_view names, std::string_view metavar, std::string_view fallback,
+               std::string_view help, std::function<void(const std::string&)> apply);
+    void flag(std::string_view names, std::string_view help, bool& set);
+    // A file or folder that the command writes; main() sees to it that no input and no other result has its place.
+    void result(std::string_view names, std::string_view metavar, std::string_view help,
+                std::optional<std::filesystem::path>& set);
+
+    const std::vector<Option>& all() const { return options_; }
+    // The results whose options were given.
+    std::vector<std::filesystem::path> results() const;
+
+  private:
+    std::vector<Option> options_;
+    std::vector<const std::optional<std::filesystem::path>*> results_;
+};
+
+class Command {
+  public:
+    struct Description {
+        std::string_view name;
+        std::string_view arguments;  // "INPUT", "A B", "[SUBDIVISION]": one positional argument a word
+        std::string_view summary;    // one line
+        std::string_view details;    // a paragraph for --help
+    };
+
+    explicit Command(const Description& description) : description_(description) {}
+    virtual ~Command() = default;
+    Command(const Command&) = delete;
+    Command& operator=(const Command&) = delete;
+
+    const Description& description() const { return description_; }
+    std::string_view name() const { return description_.name; }
+    const OptionList& options() const { return options_; }
+    int argumentCount() const;
+    // Whether -o must be given.
+    virtual bool needsOutput() const { return false; }
+    bool hasOutput() const { return output_.has_value(); }
+
+    // Does the work with the arguments and options that the parser has put in. Returns an exit code of the table in
+    // help.h; bad data, failed work, stopped work and contradicting options are thrown (isowave/error.h, progress.h).
+    virtual int run(Console& console) = 0;
+
+    std::vector<std::filesystem::path> arguments;  // the positional ones, in order
+    int threads = 0;                               // 0: all
+    bool quiet = false;
+
+  private:
+    Description description_;
+
+  protected:
+    OptionList options_;
+    std::optional<std::filesystem::path> output_;
+    std::optional<std::filesystem::path> json_;  // "-": standard output
+
+    // The options that several commands share, in the words that fit each.
+    void declareOutput(std::string_view help);
+    void declareJson();
+    void declareThreads();
+    void declareQuiet();
+    bool jsonToStandardOutput() const { return json_ && *json_ == "-"; }
+    // What the command has to tell: `text` to standard output and, with --json, `json` to its file or, for -, in place of the
+    // text. Nothing is told once a stop was asked for. Throws OperationError.
+    void tell(Console& console, const std::string& text, const std::string& json) const;
+};
+
+}  // namespace isowave::tools

@@ -1,0 +1,56 @@
+// Texts of the command line -> values. Each function throws UsageError in words ("'x' is not a number") without naming
+// the option; the parser (cli.h) puts its name in front.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "isowave/error.h"
+#include "isowave/ladder.h"
+
+namespace isowave::tools {
+
+double number(const std::string& text);    // finite
+double positive(const std::string& text);  // above 0
+// low <= value <= high
+std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high);
+// A file's name, not empty.
+std::filesystem::path place(const std::string& text);
+// A..B, A.., ..B or A: both ends included.
+StepRange range(const std::string& text);
+// AxBxC; commas will do too.
+std::array<double, 3> triple(const std::string& text, const char* example);
+std::array<std::int64_t, 3> wholeTriple(const std::string& text, const char* example);
+
+// Coordinates have 32 bits, so there are not more halvings; a larger number is a slip of the keyboard.
+inline constexpr int kMostSteps = 10'000;
+inline constexpr std::int64_t kHuge = std::int64_t{1} << 40;
+
+// A,B,C
+template <class Parse>
+auto list(const std::string& text, Parse parse) {
+    std::vector<decltype(parse(text))> result;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        result.push_back(parse(text.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return result;
+}
+
+template <class Value, std::size_t N>
+Value choice(const std::string& text, const std::pair<std::string_view, Value> (&choices)[N]) {
+    std::string names;
+    for (const auto& [name, value] : choices) {
+        if (text == name) return value;
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    throw UsageError("'" + text + "' is not one of " + names);
+}
+
+}  // namespace isowave::tools

@@ -1,0 +1,108 @@
+#include "tools/report/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/report/text.h"
+
+namespace isowave::tools {
+
+using curves2d::Fit;
+using curves2d::Ladder;
+using curves2d::StepFacts;
+
+namespace {
+
+Json fitJson(const Ladder& ladder) {
+    Json json;
+    json["method"] = ladder.fit == Fit::binary ? "binary" : "distance";
+    if (ladder.fit == Fit::distance) {
+        json["half_width"] = ladder.halfWidth;
+        json["band"] = ladder.band;
+    }
+    const curves2d::FitReport& report = ladder.fitReport;
+    json["lattice_points"] = report.latticePoints;
+    json["disagreeing"] = report.disagreeing;
+    json["repair_passes"] = report.repairPasses;
+    json["repaired"] = report.repaired;
+    json["repair_floor"] = report.repairFloor;
+    json["stopped"] = report.repairAgreed ? "agreed" : "pass_limit";
+    return json;
+}
+
+Json stepJson(const CurvesReport::Step& step) {
+    const StepFacts& f = step.facts;
+    Json json;
+    json["step"] = f.step;
+    json["level"] = f.step % 2 == 0 ? Json(f.step / 2) : Json(nullptr);
+    json["file"] = step.file ? Json(*step.file) : Json(nullptr);
+    json["domain"] = f.domain;
+    json["control_points"] = f.controlPoints;
+    json["nodes"] = f.nodes;
+    json["rings"] = f.rings;
+    json["holes"] = f.holes;
+    json["points"] = f.points;
+    json["area"] = f.area;
+    const bool known = f.points > 0;
+    json["max_to_level0"] = known ? finite(f.maxToLevel0) : Json(nullptr);
+    json["rms_to_level0"] = known ? finite(f.rmsToLevel0) : Json(nullptr);
+    return json;
+}
+
+std::string grouped(std::size_t count) { return isowave::grouped(static_cast<std::int64_t>(count)); }
+
+Json treeOf(const CurvesReport& report) {
+    Json json;
+    json["version"] = 1;
+    json["input"] = {{"path", report.path}, {"kind", report.kind}, {"pixel", report.pixel}};
+    json["fit"] = fitJson(report.ladder);
+    if (report.smooth)
+        json["smooth"] = {{"deviation", report.deviation * report.pixel},
+                          {"straight_pieces", report.straightPieces}};
+    json["steps"] = Json::array();
+    for (const CurvesReport::Step& step : report.steps) json["steps"].push_back(stepJson(step));
+    json["coefficients_stored"] = report.ladder.coefficients;
+    json["control_points"] = report.ladder.controlPoints;
+    json["peak_memory_bytes"] = report.peakMemoryBytes;
+    return json;
+}
+
+}  // namespace
+
+std::string jsonOf(const CurvesReport& report) { return dumped(treeOf(report), 2); }
+
+std::string table(const CurvesReport& report) {
+    Table table({"step", "domain", "|I|", "nodes", "rings", "holes", "points", "area"});
+    for (const auto& [f, file] : report.steps)
+        table.row({curves2d::stepName(f.step), fmt::format("{}x{}", f.domain[0], f.domain[1]),
+                   tools::grouped(f.controlPoints), tools::grouped(f.nodes), grouped(f.rings),
+                   grouped(f.holes), grouped(f.points), shortNumber(f.area)});
+    return table.text();
+}
+
+std::string summary(const CurvesReport& report, const std::string& folder) {
+    const Ladder& ladder = report.ladder;
+    const double ratio = static_cast<double>(ladder.coefficients) /
+                         static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints));
+    return fmt::format("{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n", folder,
+                       report.kind, tools::grouped(ladder.controlPoints), tools::grouped(ladder.coefficients),
+                       100.0 * (ratio - 1), report.files);
+}
+
+std::vector<std::string> fitRemarks(const curves2d::FitReport& report) {
+    if (!report.disagreeing) return {};
+    return {fmt::format("{} of {} lattice points have another sign than the input", report.disagreeing,
+                        report.latticePoints)};
+}
+
+std::string smoothRemark(const CurvesReport& report) {
+    const std::string straight =
+        report.straightPieces ? fmt::format("; {} pieces in squares that hold a sharp bend are straight",
+                                            grouped(report.straightPieces))
+                              : "";
+    return fmt::format("the smooth curves stay within {} pixels of the zero set{}",
+                       shortNumber(report.deviation), straight);
+}
+
+}  // namespace isowave::tools

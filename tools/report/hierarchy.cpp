@@ -1,0 +1,134 @@
+#include "tools/report/hierarchy.h"
+
+#include <fmt/format.h>
+
+namespace isowave::tools {
+
+using subdivision::DecompositionReport;
+using subdivision::PointError;
+using subdivision::RebuildReport;
+
+namespace {
+
+Json errorJson(const PointError& error) { return {{"rms", error.rms}, {"largest", error.largest}}; }
+
+// In units of the mesh, and in percent of its diagonal.
+std::string relative(double value, double diagonal) {
+    return diagonal > 0 ? fmt::format("{:.3g} ({:.2g} %)", value, 100 * value / diagonal)
+                        : fmt::format("{:.3g}", value);
+}
+
+}  // namespace
+
+std::string textOf(const DecompositionReport& report) {
+    std::string out = fmt::format(
+        "{}, {}; creases {}, marked corners {}; round trip {:.1e} of the diagonal {:.6g}\n\n", report.scheme,
+        report.variant, report.creases, report.pinned,
+        report.diagonal > 0 ? report.roundTrip / report.diagonal : report.roundTrip, report.diagonal);
+    out +=
+        "subdivisions   vertices      faces   details to the next: rms   largest   to the finest without "
+        "details: rms\n";
+    for (std::size_t k = 0; k < report.levels.size(); ++k) {
+        const auto& level = report.levels[k];
+        const bool finest = k + 1 == report.levels.size();
+        out +=
+            fmt::format("{:12} {:10} {:10}   {:>24} {:>9}   {:>34}\n", k == 0 ? "base" : fmt::format("{}", k),
+                        level.vertices, level.faces, finest ? "" : fmt::format("{:.3g}", level.detailRms),
+                        finest ? "" : fmt::format("{:.3g}", level.detailLargest),
+                        finest ? "" : relative(level.withoutDetails.rms, report.diagonal));
+    }
+    return out;
+}
+
+namespace {
+
+Json treeOf(const DecompositionReport& report) {
+    Json j = {{"version", 1},
+              {"scheme", report.scheme},
+              {"variant", report.variant},
+              {"creases", report.creases},
+              {"pinned", report.pinned},
+              {"diagonal", report.diagonal},
+              {"round_trip", report.roundTrip}};
+    auto levels = Json::array();
+    for (const auto& level : report.levels) {
+        levels.push_back({{"vertices", level.vertices},
+                          {"faces", level.faces},
+                          {"detail_rms", level.detailRms},
+                          {"detail_largest", level.detailLargest},
+                          {"without_details", errorJson(level.withoutDetails)}});
+    }
+    j["levels"] = levels;
+    return j;
+}
+
+}  // namespace
+
+std::string jsonOf(const DecompositionReport& report) { return dumped(treeOf(report), 1); }
+
+std::string textOf(const RebuildReport& report) {
+    std::string out =
+        fmt::format("{} vertices, {} faces after {} subdivision{}; {} of {} details", report.vertices,
+                    report.faces, report.levels, report.levels == 1 ? "" : "s", report.kept, report.details);
+    if (report.error.largest > 0) {
+        out += fmt::format("; without the others rms {}, largest {}",
+                           relative(report.error.rms, report.diagonal),
+                           relative(report.error.largest, report.diagonal));
+    }
+    out += "\n";
+    if (report.shares.empty()) return out;
+    out += "\nlongest details      kept   error: rms              largest\n";
+    for (const auto& share : report.shares) {
+        out += fmt::format("{:>13.0f} % {:>9}   {:<22}  {}\n", 100 * share.share, share.kept,
+                           relative(share.error.rms, report.diagonal),
+                           relative(share.error.largest, report.diagonal));
+    }
+    return out;
+}
+
+namespace {
+
+Json treeOf(const RebuildReport& report) {
+    Json j = {{"version", 1},
+              {"levels", report.levels},
+              {"vertices", report.vertices},
+              {"faces", report.faces},
+              {"details", report.details},
+              {"kept", report.kept},
+              {"diagonal", report.diagonal},
+              {"error", errorJson(report.error)}};
+    if (!report.shares.empty()) {
+        auto shares = Json::array();
+        for (const auto& share : report.shares)
+            shares.push_back(
+                {{"share", share.share}, {"kept", share.kept}, {"error", errorJson(share.error)}});
+        j["shares"] = shares;
+    }
+    return j;
+}
+
+}  // namespace
+
+std::string jsonOf(const RebuildReport& report) { return dumped(treeOf(report), 1); }
+
+std::string textOf(const SubdivisionReport& report) {
+    return fmt::format("{}, {} level{}: {} vertices, {} faces\n", report.scheme, report.levels,
+                       report.levels == 1 ? "" : "s", report.vertices, report.faces);
+}
+
+namespace {
+
+Json treeOf(const SubdivisionReport& report) {
+    return {{"version", 1},
+            {"scheme", report.scheme},
+            {"levels", report.levels},
+            {"creases", report.creases},
+            {"vertices", report.vertices},
+            {"faces", report.faces}};
+}
+
+}  // namespace
+
+std::string jsonOf(const SubdivisionReport& report) { return dumped(treeOf(report), 1); }
+
+}  // namespace isowave::tools

@@ -1,0 +1,18 @@
+// JSON as all reports write it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace isowave::tools {
+
+// Keys keep the order in which they were put in.
+using Json = nlohmann::ordered_json;
+
+// null when not finite: JSON knows no infinity.
+Json finite(double value);
+
+// Indented by so many spaces, one trailing newline; file names that are not UTF-8 get replacement characters.
+std::string dumped(const Json& json, int indent = 2);
+
+}  // namespace isowave::tools

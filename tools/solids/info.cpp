@@ -1,0 +1,131 @@
+// isowave info FILE: what is in it.
+#include <algorithm>
+
+#include "io/mesh/equal_points.h"
+#include "lod/open_image.h"
+#include "lod/open_mesh.h"
+#include "lod/solid.h"
+#include "tools/commands.h"
+#include "tools/console.h"
+#include "tools/report/info_report.h"
+#include "tools/solids/solid_options.h"
+#include "volume/vdb_file.h"
+#include "wavelets/pyramid_file.h"
+
+namespace isowave::tools {
+namespace {
+namespace fs = std::filesystem;
+
+ImageInfo imageInfo(const fs::path& path, const SolidOptions& options, Console& console) {
+    ImageStream stream(path, lod::imageReadOptions(options));
+    const ImageStatistics statistics = statisticsOf(stream, {}, console.progress());
+    for (const std::string& warning : stream.header().warnings) console.say(warning);
+    return {path.string(), stream.header(), statistics};
+}
+
+MeshInfo meshInfo(const fs::path& path, Console& console) {
+    const lod::LoadedMesh loaded = lod::loadMesh(path, console.progress());
+    MeshInfo info{
+        path.string(), loaded.format, loaded.space, topologyOf(mergeEqualPoints(loaded.mesh)), {}, {}};
+    info.low = info.high = loaded.mesh.points.front();
+    for (const Point& p : loaded.mesh.points)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            info.low[axis] = std::min(info.low[axis], p[axis]);
+            info.high[axis] = std::max(info.high[axis], p[axis]);
+        }
+    return info;
+}
+
+VdbInfo::Metadata metadataOf(const openvdb::MetaMap& map) {
+    VdbInfo::Metadata metadata;
+    for (auto entry = map.beginMeta(); entry != map.endMeta(); ++entry)
+        metadata.emplace_back(entry->first, entry->second ? entry->second->str() : std::string());
+    return metadata;
+}
+
+VdbInfo::Grid gridInfo(const openvdb::GridBase& grid) {
+    const auto box = grid.evalActiveVoxelBoundingBox();
+    const auto dim = box.empty() ? openvdb::Coord(0) : box.dim();
+    const auto spacing = grid.voxelSize();
+    return {grid.getName(),
+            grid.valueType(),
+            openvdb::GridBase::gridClassToString(grid.getGridClass()),
+            static_cast<std::int64_t>(grid.activeVoxelCount()),
+            {dim.x(), dim.y(), dim.z()},
+            {spacing.x(), spacing.y(), spacing.z()},
+            metadataOf(grid)};
+}
+
+VdbInfo vdbInfo(const fs::path& path) {
+    const VdbContent content = readVdb(path);
+    VdbInfo info{path.string(), {}, {}};
+    if (content.metadata) info.metadata = metadataOf(*content.metadata);
+    for (const auto& grid : content.grids) info.grids.push_back(gridInfo(*grid));
+    return info;
+}
+
+PyramidInfo pyramidInfo(const fs::path& path, const LevelOptions& options, Console& console) {
+    const Pyramid pyramid = Pyramid::open(path);
+    PyramidInfo info;
+    info.path = path.string();
+    info.formatVersion = wavelets::kPyramidFormatVersion;
+    info.K = pyramid.K();
+    info.source = pyramid.source();
+    info.coefficientsStored = pyramid.coefficientsStored();
+    info.controlPoints = pyramid.controlPoints();
+    info.memoryBytes = pyramid.memoryBytes();
+    info.fileBytes = static_cast<std::int64_t>(fs::file_size(path));
+    info.steps = pyramid.steps();
+    info.levels = describeLevels(pyramid, options, console.progress());
+    return info;
+}
+
+class Info : public Command {
+  public:
+    Info()
+        : Command({"info", "FILE", "what is in an image, a mesh, a .vdb or a pyramid",
+                   "Prints size, spacing, orientation and the range of values of an image; counts and bounds "
+                   "of a "
+                   "mesh; the grids of a .vdb; a table of the steps of a pyramid."}) {
+        declareFeatures(options_, level_);
+        declareJson();
+        declareImage(options_, solid_);
+        declareThreads();
+        declareMaxMemory(options_, solid_);
+        declareQuiet();
+    }
+
+    int run(Console& console) override {
+        const fs::path& path = arguments[0];
+        switch (lod::kindOf(path, solid_)) {
+            case lod::InputKind::image:
+                show(console, imageInfo(path, solid_, console));
+                break;
+            case lod::InputKind::mesh:
+                show(console, meshInfo(path, console));
+                break;
+            case lod::InputKind::vdb:
+                show(console, vdbInfo(path));
+                break;
+            case lod::InputKind::pyramid:
+                show(console, pyramidInfo(path, level_, console));
+                break;
+        }
+        return 0;
+    }
+
+  private:
+    template <class Report>
+    void show(Console& console, const Report& info) const {
+        tell(console, textOf(info), jsonOf(info));
+    }
+
+    SolidOptions solid_;
+    LevelOptions level_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> infoCommand() { return std::make_unique<Info>(); }
+
+}  // namespace isowave::tools

@@ -1,0 +1,176 @@
+// isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
+// the folder at once.
+#include <optional>
+
+#include "base/atomic_file.h"
+#include "base/heap.h"
+#include "io/mesh/write.h"
+#include "isowave/error.h"
+#include "isowave/ladder.h"
+#include "lod/budgets.h"
+#include "tools/commands.h"
+#include "tools/console.h"
+#include "tools/option_values.h"
+#include "tools/output.h"
+#include "tools/report/ladder_report.h"
+#include "tools/solids/mesh_names.h"
+#include "tools/solids/solid_options.h"
+
+namespace isowave::tools {
+namespace {
+
+constexpr const char* kReport = "report.json";
+
+// Writes meshes into the folder, and keeps what they are called.
+struct MeshWriter {
+    const MeshNames& names;
+    MeshFormat format;
+    Space space;
+    OutputFolder& out;
+    LadderFiles files;
+
+    void write(const std::string& name, const TriangleMesh& mesh) {
+        writeMesh(out.place(name), mesh, format, {.space = space});
+    }
+    LadderVisitor visitor() {
+        const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
+            files.levels.push_back(names.ofStep(report.step));
+            write(files.levels.back(), mesh);
+        };
+        const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
+            files.budgets.push_back(names.ofBudget(report));
+            write(files.budgets.back(), mesh);
+        };
+        return {level, budget, releaseFreedMemory};
+    }
+};
+
+// What can fail for want of room comes first; then only names change.
+void finish(const Ladder& ladder, const LadderFiles& files, Space space, bool toStdout, AtomicFile* copy,
+            OutputFolder& out, Console& console) {
+    const std::string json = jsonOf(ladder, files);
+    AtomicFile file(out.place(kReport));
+    writeWhole(file, json);
+    file.commit();
+    if (copy) writeWhole(*copy, json);
+    console.progress().check();
+    console.print(toStdout ? json : textOf(ladder, files, space == Space::unspecified ? "" : " [mm]"));
+    console.flush();
+    out.commit();
+    if (copy) copy->commit();
+}
+
+// Of level 0's triangles.
+double share(const std::string& text) {
+    const double ratio = positive(text);
+    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all of level 0's triangles");
+    return ratio;
+}
+
+class Lod : public Command {
+  public:
+    Lod();
+    bool needsOutput() const override { return true; }
+    int run(Console& console) override;
+
+  private:
+    void declareLevels();
+    void declareBudgets();
+    void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+
+    LevelOptions levels_;
+    BudgetOptions budgets_;
+    SolidOptions solid_;
+    std::optional<MeshFormat> format_;
+    SpaceChoice space_;
+};
+
+Lod::Lod()
+    : Command(
+          {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
+           "INPUT is an image (NIfTI, NRRD, MetaImage, TIFF; a folder of DICOM, TIFF or PNG slices; raw with "
+           "--size), a mesh (STL, OBJ, PLY, OFF), a level set (.vdb) or a pyramid (analyse). -o out/part "
+           "makes "
+           "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
+           "are "
+           "part_s0.ply, part_s1.ply, ... Level L is step 3L: every axis halved L times. With a budget there "
+           "is "
+           "one mesh a budget instead of one a level (give --levels to have both): the step whose topology "
+           "suits "
+           "it, with edges collapsed; the report says which and why. The ladder ends where one node is left, "
+           "or "
+           "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
+           "leaves the folder as it was."}) {
+    declareOutput("the folder that gets one mesh a level, and report.json");
+    declareLevels();
+    declareFormat(options_, format_);
+    space_.declare(options_);
+    declareMesh(options_, levels_, /*features=*/true);
+    declareJson();
+    declareBudgets();
+    declareSolid(options_, solid_);
+    declareThreads();
+    declareMaxMemory(options_, solid_);
+    declareQuiet();
+}
+
+void Lod::declareLevels() {
+    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
+                   [this](const std::string& v) { levels_.levels = range(v); });
+    options_.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
+                   [this](const std::string& v) { levels_.steps = range(v); });
+}
+
+void Lod::declareBudgets() {
+    options_.value(
+        "--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
+        [this](const std::string& v) {
+            budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
+        });
+    options_.value("--ratio", "R,R,...", "",
+                   "the same as a share of level 0's triangles (0.01 = 1 %): name_RR",
+                   [this](const std::string& v) { budgets_.ratios = list(v, share); });
+    options_.value("--tolerance", "D,D,...", "",
+                   "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
+                   [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
+    options_.value("--max-genus", "N", "",
+                   "budgets: only from steps with at most N handles; alone: the finest such step",
+                   [this](const std::string& v) { budgets_.maxGenus = integer(v, 0, kHuge); });
+    options_.value("--min-component", "VOLUME", "",
+                   "budgets: only from steps without components smaller than that (world units cubed)",
+                   [this](const std::string& v) { budgets_.minComponent = positive(v); });
+}
+
+void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
+    if (json_ && !jsonToStandardOutput()) out.keepFree(*json_);
+    out.refuseTaken(kReport);
+    for (const std::string& file : names.all()) out.refuseTaken(file);
+}
+
+int Lod::run(Console& console) {
+    OutputFolder out(*output_, Inputs(arguments));
+    const MeshFormat format = format_.value_or(MeshFormat::ply);
+    lod::checkBudgets(budgets_, solid_.openBorder);
+    checkRanges(levels_);
+    const MeshNames names(out.name(), format, levels_, budgets_);
+    refuseTaken(names, out);
+    std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
+    if (json_ && !jsonToStandardOutput()) copy.emplace(*json_);
+    try {
+        Solid solid = open(arguments[0], solid_, console.progress());
+        MeshWriter writer{names, format, space_.of(solid), out, {}};
+        const Ladder ladder =
+            makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
+        finish(ladder, writer.files, writer.space, jsonToStandardOutput(), copy ? &*copy : nullptr, out,
+               console);
+    } catch (const OperationError& error) {
+        throw OperationError(out.publicText(error.what()));
+    }
+    return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Command> lodCommand() { return std::make_unique<Lod>(); }
+
+}  // namespace isowave::tools

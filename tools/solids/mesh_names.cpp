@@ -1,0 +1,52 @@
+#include "tools/solids/mesh_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isowave::tools {
+namespace {
+
+// Coordinates have 32 bits, so an axis is halved at most so often.
+constexpr int kMostSteps = 32 * kStepsPerLevel;
+
+std::string trianglesSuffix(std::int64_t triangles) { return fmt::format("T{}", triangles); }
+std::string ratioSuffix(double ratio) { return fmt::format("R{:g}", ratio); }
+std::string toleranceSuffix(double tolerance) { return fmt::format("D{:g}", tolerance); }
+
+}  // namespace
+
+MeshNames::MeshNames(std::string folder, MeshFormat format, const LevelOptions& levels,
+                     const BudgetOptions& budgets)
+    : folder_(std::move(folder)), format_(format), levels_(levels), budgets_(budgets) {}
+
+std::string MeshNames::named(const std::string& suffix) const {
+    return fmt::format("{}_{}{}", folder_, suffix, extensionOf(format_));
+}
+
+std::string MeshNames::ofStep(int step) const {
+    return named(levels_.steps ? fmt::format("s{}", step) : fmt::format("L{}", step / kStepsPerLevel));
+}
+
+std::string MeshNames::ofBudget(const BudgetReport& budget) const {
+    if (budget.ratioAsked) return named(ratioSuffix(*budget.ratioAsked));
+    if (budget.trianglesAsked) return named(trianglesSuffix(*budget.trianglesAsked));
+    if (budget.toleranceAsked) return named(toleranceSuffix(*budget.toleranceAsked));
+    return named("chosen");
+}
+
+std::vector<std::string> MeshNames::all() const {
+    std::vector<std::string> names;
+    const int stride = levels_.steps ? 1 : kStepsPerLevel;
+    const StepRange range = levels_.steps ? *levels_.steps : levels_.levels.value_or(StepRange{});
+    const int last = range.last ? *range.last * stride : kMostSteps;
+    for (int step = range.first * stride; step <= std::min(last, kMostSteps); step += stride)
+        names.push_back(ofStep(step));
+    for (const std::int64_t n : budgets_.triangles) names.push_back(named(trianglesSuffix(n)));
+    for (const double ratio : budgets_.ratios) names.push_back(named(ratioSuffix(ratio)));
+    for (const double tolerance : budgets_.tolerances) names.push_back(named(toleranceSuffix(tolerance)));
+    if (budgets_.maxGenus || budgets_.minComponent) names.push_back(named("chosen"));
+    return names;
+}
+
+}  // namespace isowave::tools

@@ -1,0 +1,34 @@
+// What the meshes of `isowave lod` are called.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/mesh/write.h"
+#include "isowave/ladder.h"
+
+namespace isowave::tools {
+
+class MeshNames {
+  public:
+    // folder: the name of the folder that the meshes go to, which their own names start with.
+    MeshNames(std::string folder, MeshFormat format, const LevelOptions& levels,
+              const BudgetOptions& budgets);
+
+    // part_L2.ply; with --steps part_s5.ply
+    std::string ofStep(int step) const;
+    // part_T20000.ply, part_R0.01.ply, part_D0.5.ply; part_chosen.ply where only the topology is limited.
+    std::string ofBudget(const BudgetReport& budget) const;
+    // Of all steps that may be reached, and of all budgets.
+    std::vector<std::string> all() const;
+
+  private:
+    std::string named(const std::string& suffix) const;
+
+    std::string folder_;
+    MeshFormat format_;
+    LevelOptions levels_;
+    BudgetOptions budgets_;
+};
+
+}  // namespace isowave::tools

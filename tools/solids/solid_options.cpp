@@ -1,0 +1,172 @@
+#include "tools/solids/solid_options.h"
+
+#include "tools/option_values.h"
+
+namespace isowave::tools {
+namespace {
+
+constexpr double kBytesPerGigabyte = 1e9;
+
+// What describes a headerless image; the library says what is missing.
+RawLayout& raw(SolidOptions& solid) {
+    if (!solid.image.raw) solid.image.raw.emplace();
+    return *solid.image.raw;
+}
+
+void declareInside(OptionList& options, SolidOptions& solid) {
+    options.value("--iso", "V", "masks: midpoint; labels: not zero; level sets: 0; other images: required",
+                  "the surface is where the value is V; inside is where it is larger (level sets: smaller)",
+                  [&](const std::string& v) { solid.iso = number(v); });
+    options.value("--label", "L", "every label but 0",
+                  "the solid is where a label image is L (after NIfTI's scaling)",
+                  [&](const std::string& v) { solid.label = number(v); });
+    options.flag("--invert", "swap inside and outside", solid.invert);
+    options.flag("--open-border", "no cap where the solid touches the border of the image", solid.openBorder);
+    options.value("--voxels", "N", "256", "meshes: sample with N voxels along the longest axis",
+                  [&](const std::string& v) { solid.voxels = integer(v, 4, 1'000'000'000); });
+    options.value("--voxel", "LEN", "", "meshes: sample with voxels of this size (world units)",
+                  [&](const std::string& v) { solid.voxel = positive(v); });
+}
+
+void declareFit(OptionList& options, SolidOptions& solid) {
+    options.value("--fit", "binary|distance", "binary for masks and labels, otherwise distance",
+                  "from signs alone (filtered weights), or from signed distances", [&](const std::string& v) {
+                      solid.fit = choice<FitMethod>(
+                          v, {{"binary", FitMethod::binary}, {"distance", FitMethod::distance}});
+                  });
+    options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
+                  [&](const std::string& v) { solid.halfWidth = positive(v); });
+    options.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
+                  [&](const std::string& v) { solid.band = positive(v); });
+}
+
+void declareLevelIso(OptionList& options, LevelOptions& level) {
+    options.flag("--preserve-volume",
+                 "each level at the iso-value that gives it the volume of level 0, to 0.01 %",
+                 level.preserveVolume);
+    options.flag(
+        "--protect-thin",
+        "each level at the least iso-value that keeps thin walls and rods together; sampled twice as "
+        "fine where that leaves fewer holes in them",
+        level.protectThin);
+    options.flag("--keep-specks",
+                 "coarser levels keep components and cavities that are smaller than one of their nodes",
+                 level.keepSpecks);
+}
+
+}  // namespace
+
+void declareSolid(OptionList& options, SolidOptions& solid) {
+    declareInside(options, solid);
+    declareFit(options, solid);
+    declareImage(options, solid);
+    options.value("--grid", "NAME", "", ".vdb with several level sets: which grid",
+                  [&](const std::string& v) { solid.grid = v; });
+}
+
+void declareImage(OptionList& options, SolidOptions& solid) {
+    options.value("--size", "NXxNYxNZ", "", "the image has no header: voxels on each axis, x fastest",
+                  [&](const std::string& v) { raw(solid).size = wholeTriple(v, "256x256x108"); });
+    options.value("--type", "int8|uint8|int16|uint16|int32|uint32|float32|float64", "",
+                  "headerless image: type of a voxel", [&](const std::string& v) {
+                      raw(solid).type = choice<std::string>(v, {{"int8", "int8"},
+                                                                {"uint8", "uint8"},
+                                                                {"int16", "int16"},
+                                                                {"uint16", "uint16"},
+                                                                {"int32", "int32"},
+                                                                {"uint32", "uint32"},
+                                                                {"float32", "float32"},
+                                                                {"float64", "float64"}});
+                  });
+    options.value("--spacing", "XxYxZ", "1x1x1 where the file has none",
+                  "voxel size in mm; replaces the header's",
+                  [&](const std::string& v) { solid.image.spacing = triple(v, "0.957x0.957x1.5"); });
+    options.value("--endian", "little|big", "little", "headerless image: byte order",
+                  [&](const std::string& v) {
+                      raw(solid).bigEndian = choice<bool>(v, {{"little", false}, {"big", true}});
+                  });
+    options.value("--header-bytes", "N", "0", "headerless image: bytes to skip at the start",
+                  [&](const std::string& v) { raw(solid).headerBytes = integer(v, 0, kHuge); });
+    options.value("--series", "ID", "", "DICOM folder with several series: a part of its UID or description",
+                  [&](const std::string& v) { solid.image.series = v; });
+}
+
+void declareMaxMemory(OptionList& options, SolidOptions& solid) {
+    options.value(
+        "--max-memory", "GB", "70 % of this computer's",
+        "refuse images, meshes and level sets that would take more, as far as can be told beforehand",
+        [&](const std::string& v) { solid.maxMemory = positive(v) * kBytesPerGigabyte; });
+}
+
+void declareMesh(OptionList& options, LevelOptions& level, bool features) {
+    options.value("--refine", "1|2|4", "1",
+                  "samples of a node along each axis: more triangles, closer to the spline",
+                  [&](const std::string& v) {
+                      level.refine = choice<int>(v, {{"1", 1}, {"2", 2}, {"4", 4}});
+                  });
+    declareLevelIso(options, level);
+    if (features) declareFeatures(options, level);
+    options.flag(
+        "--refit",
+        "the field of each level fitted once more to the surface of level 0: nearer to it, and to its volume",
+        level.refit);
+    options.flag(
+        "--compact",
+        "with --refine: collapse each mesh down to about the triangles that it has without it; nearer "
+        "to the surface at the same size",
+        level.compact);
+    options.value("--relax", "N", "0",
+                  "N rounds of sliding vertices along the surface: larger angles, same zero set",
+                  [&](const std::string& v) { level.relax = static_cast<int>(integer(v, 0, 1000)); });
+    options.flag("--deviation", "measure how far triangles are from the zero set of the spline",
+                 level.deviation);
+}
+
+void declareFeatures(OptionList& options, LevelOptions& level) {
+    options.flag("--features",
+                 "measure parts, holes and cavities, and say up to which size they vanish (takes longer)",
+                 level.features);
+}
+
+void StepChoice::declare(OptionList& options) {
+    options.value("--step", "S", "0", "which step",
+                  [this](const std::string& v) { step = static_cast<int>(integer(v, 0, kMostSteps)); });
+    options.value("--level", "L", "", "which level, instead of --step", [this](const std::string& v) {
+        level = static_cast<int>(integer(v, 0, kMostSteps / kStepsPerLevel));
+    });
+}
+
+int StepChoice::wanted() const {
+    if (step && level) throw UsageError("--step and --level exclude each other; level L is step 3L");
+    return level ? kStepsPerLevel * *level : step.value_or(0);
+}
+
+void declareFormat(OptionList& options, std::optional<MeshFormat>& format) {
+    options.value("--format", "stl|ply|obj|off|glb", "ply for lod, by the file's extension for mesh",
+                  "format of the meshes", [&](const std::string& v) {
+                      format = choice<MeshFormat>(v, {{"stl", MeshFormat::stl},
+                                                      {"ply", MeshFormat::ply},
+                                                      {"obj", MeshFormat::obj},
+                                                      {"off", MeshFormat::off},
+                                                      {"glb", MeshFormat::glb}});
+                  });
+}
+
+void SpaceChoice::declare(OptionList& options) {
+    options.value("--space", "lps|ras", "lps for images, as it is for meshes",
+                  "axes of the written coordinates, for medical images and meshes that say SPACE=",
+                  [this](const std::string& v) {
+                      space = choice<Space>(v, {{"lps", Space::lps}, {"ras", Space::ras}});
+                  });
+}
+
+Space SpaceChoice::of(const Solid& solid) const {
+    if (!space) return solid.space();
+    if (solid.space() == Space::unspecified)
+        throw UsageError(
+            "--space: the axes of this input have no medical meaning (not an image, and no SPACE= in the "
+            "mesh); leave it out");
+    return *space;
+}
+
+}  // namespace isowave::tools

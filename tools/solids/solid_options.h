@@ -1,0 +1,41 @@
+// Options that several of the solid commands share, declared into the library's own structs.
+#pragma once
+
+#include "isowave/ladder.h"
+#include "isowave/mesh.h"
+#include "isowave/solid.h"
+#include "tools/command.h"
+
+namespace isowave::tools {
+
+// --iso ... --voxel, --fit ... --band, --size ... --grid: what the solid is, how it is fitted, how its file is read.
+void declareSolid(OptionList& options, SolidOptions& solid);
+// Of these, --size ... --series: how an image is read.
+void declareImage(OptionList& options, SolidOptions& solid);
+void declareMaxMemory(OptionList& options, SolidOptions& solid);
+
+// --refine ... --deviation: how the mesh of a level is made. features: --features among them.
+void declareMesh(OptionList& options, LevelOptions& level, bool features);
+void declareFeatures(OptionList& options, LevelOptions& level);
+
+// --step, --level.
+struct StepChoice {
+    std::optional<int> step, level;
+
+    void declare(OptionList& options);
+    // The step that was asked for; 0 when neither was given. Throws UsageError when both were.
+    int wanted() const;
+};
+
+void declareFormat(OptionList& options, std::optional<MeshFormat>& format);
+
+// --space.
+struct SpaceChoice {
+    std::optional<Space> space;
+
+    void declare(OptionList& options);
+    // Where written meshes have their axes. Throws UsageError for --space on a solid whose axes have no meaning.
+    Space of(const Solid& solid) const;
+};
+
+}  // namespace isowave::tools

@@ -1,0 +1,132 @@
+// isowave rebuild BASE --details FILE -o OUT: a base and its details -> the mesh at any level, edited or simplified.
+#include <fmt/format.h>
+
+#include "isowave/error.h"
+#include "isowave/subdivision.h"
+#include "subdivision/meshes/hierarchy_report.h"
+#include "subdivision/meshes/mesh_files.h"
+#include "tools/commands.h"
+#include "tools/console.h"
+#include "tools/option_values.h"
+#include "tools/output.h"
+#include "tools/report/hierarchy.h"
+#include "tools/subdivision/mesh_options.h"
+
+namespace isowave::tools {
+namespace {
+
+using namespace subdivision;
+
+// Reads a mesh that must have the base's connectivity.
+PolygonMesh readLikeBase(const std::filesystem::path& path, const Hierarchy& hierarchy) {
+    PolygonMesh mesh = readPolygonMesh(path);
+    requireManifold(mesh, path.string());
+    try {
+        requireSameConnectivity(hierarchy.base, mesh);
+    } catch (const InputError& error) {
+        throw InputError(path.string(), error.what());
+    }
+    return mesh;
+}
+
+// BASE is the base that the details were made for.
+void requireBase(const std::filesystem::path& path, const std::filesystem::path& details,
+                 const Hierarchy& hierarchy) {
+    const auto moved = firstMovedVertex(hierarchy.base, readLikeBase(path, hierarchy));
+    if (!moved) return;
+    throw InputError(
+        path.string(),
+        fmt::format("its vertex {} lies {:.3g} away from that of the base in {}; give a base with moved "
+                    "vertices as --edited",
+                    moved->vertex, moved->distance, details.string()));
+}
+
+class Rebuild : public Command {
+  public:
+    Rebuild();
+    bool needsOutput() const override { return true; }
+    int run(Console& console) override;
+
+  private:
+    void refuseContradictions() const;
+    RebuildOptions rebuildOptions(const Hierarchy& hierarchy) const;
+
+    int depth_ = kAllLevels;
+    std::optional<std::filesystem::path> details_, edited_;
+    std::optional<Frames> frames_;
+    std::optional<double> threshold_;
+    std::optional<std::size_t> keep_;
+    bool errorTable_ = false;
+};
+
+Rebuild::Rebuild()
+    : Command({"rebuild", "BASE",
+               "a base mesh and its details -> the mesh at any level, edited or simplified",
+               "BASE and --details FILE come from reverse. --edited BASE2 is BASE with moved vertices: the "
+               "details "
+               "follow. --threshold and --keep leave short details out and measure what that costs."}) {
+    declareOutput("the mesh's file");
+    declareJson();
+    declareDepth(options_, "all", "how many subdivisions finer than BASE; finer details are not even read",
+                 depth_);
+    options_.value("--details", "FILE", "", "the details that reverse has written; needed",
+                   [this](const std::string& v) { details_ = place(v); });
+    options_.value("--edited", "FILE", "", "BASE with moved vertices, which takes its place",
+                   [this](const std::string& v) { edited_ = place(v); });
+    options_.value("--frames", "global|local", "global",
+                   "details keep their direction in space, or turn with the surface (--edited)",
+                   [this](const std::string& v) {
+                       frames_ = choice<Frames>(v, {{"global", Frames::global}, {"local", Frames::local}});
+                   });
+    options_.value("--threshold", "LEN", "", "leave out details shorter than this, in the units of the mesh",
+                   [this](const std::string& v) { threshold_ = positive(v); });
+    options_.value("--keep", "N", "", "only the N longest details",
+                   [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
+    options_.flag("--error-table", "the error that is left with the longest 0 to 50 % of the details",
+                  errorTable_);
+    declareQuiet();
+}
+
+void Rebuild::refuseContradictions() const {
+    if (!details_) throw UsageError("--details: is needed; isowave reverse --details FILE writes it");
+    if (frames_ && !edited_) throw UsageError("--frames: belongs to --edited");
+    if (threshold_ && keep_) throw UsageError("--threshold and --keep: give one of them");
+    polygonFormatOf(*output_);  // a wrong name is found before the work
+    Inputs({*details_, edited_.value_or(*details_)}).refuse(*output_);
+}
+
+RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
+    RebuildOptions options;
+    if (edited_) options.moved = readLikeBase(*edited_, hierarchy).points;
+    options.frames = frames_.value_or(options.frames);
+    options.threshold = threshold_;
+    options.keep = keep_;
+    options.shares = errorTable_;
+    return options;
+}
+
+int Rebuild::run(Console& console) {
+    refuseContradictions();
+    Hierarchy hierarchy = loadHierarchy(*details_, depth_);
+    requireBase(arguments[0], *details_, hierarchy);
+    const RebuildOptions options = rebuildOptions(hierarchy);
+    const auto [mesh, report] = [&] {
+        try {
+            return rebuild(std::move(hierarchy), options, console.progress());
+        } catch (const InputError& error) {
+            throw InputError(details_->string(), error.what());
+        }
+    }();
+
+    OutputFile out(*output_);
+    writePolygonMesh(*output_, mesh);
+    out.commit();
+    tell(console, textOf(report), jsonOf(report));
+    return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Command> rebuildCommand() { return std::make_unique<Rebuild>(); }
+
+}  // namespace isowave::tools

@@ -1,0 +1,128 @@
+// isowave reverse MESH -o BASE: a mesh with subdivision connectivity, as a coarse base and details.
+#include "base/atomic_file.h"
+#include "isowave/error.h"
+#include "isowave/subdivision.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
+#include "tools/commands.h"
+#include "tools/console.h"
+#include "tools/option_values.h"
+#include "tools/output.h"
+#include "tools/report/hierarchy.h"
+#include "tools/subdivision/mesh_options.h"
+
+namespace isowave::tools {
+namespace {
+
+using namespace subdivision;
+
+class Reverse : public Command {
+  public:
+    Reverse();
+    bool needsOutput() const override { return true; }
+    int run(Console& console) override;
+
+  private:
+    DecomposeOptions decomposeOptions(const MeshScheme& scheme) const;
+    void refuseBadPlaces() const;
+    void write(const Hierarchy& hierarchy) const;
+
+    int depth_ = kAllLevels;
+    std::string scheme_ = "catmull-clark", variant_;
+    std::optional<double> creaseAngle_;
+    std::optional<std::filesystem::path> details_;
+};
+
+Reverse::Reverse()
+    : Command(
+          {"reverse", "MESH",
+           "a mesh with subdivision connectivity -> a coarse base mesh and details, losslessly",
+           "MESH (OBJ, OFF, PLY) is one that subdivision has made, moved points and all: catmull-clark finds "
+           "the "
+           "polygons inside a mesh of quads, loop and butterfly the triangles inside one of triangles; "
+           "vertices and "
+           "faces may come in any order. -o BASE is the coarse mesh, --details FILE everything that is "
+           "needed to "
+           "have MESH back. Marked creases ('t crease 2/1/0 V1 V2 SHARPNESS', vertices counted from 0) and "
+           "boundaries are curves of their own."}) {
+    declareOutput("the base mesh's file");
+    declareJson();
+    declareDepth(options_, "as many as there are", "how many levels coarser", depth_);
+    declareScheme(options_, scheme_);
+    options_.value("--variant", "NAME", "the first",
+                   "how the coarse mesh is fitted; catmull-clark: refined, trial, unscaled, tensor, wide; "
+                   "loop, butterfly: refined, trial, wide",
+                   [this](const std::string& v) { variant_ = v; });
+    declareCrease(options_, creaseAngle_);
+    options_.value("--details", "FILE", "", "the file that gets the details",
+                   [this](const std::string& v) { details_ = place(v); });
+    declareQuiet();
+}
+
+DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
+    DecomposeOptions options;
+    options.variant = meshVariant(scheme, variant_);
+    options.levels = depth_;
+    options.creaseAngle = creaseAngle_;
+    if (creaseAngle_ && scheme.name != "catmull-clark")
+        throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme.name) +
+                         " has no creases");
+    return options;
+}
+
+void Reverse::refuseBadPlaces() const {
+    polygonFormatOf(*output_);  // a wrong name is found before the work
+    if (!details_) return;
+    Inputs(arguments).refuse(*details_);
+    refuseSamePlace(*output_, *details_);
+}
+
+// The base and, when asked for, the details: both or none.
+void Reverse::write(const Hierarchy& hierarchy) const {
+    OutputFile baseFolders(*output_);
+    std::optional<OutputFile> detailsFolders;
+    if (details_) detailsFolders.emplace(*details_);
+    AtomicFile base(*output_);
+    std::optional<AtomicFile> details;
+    if (details_) details.emplace(*details_);
+    try {
+        base.stream() << polygonMeshBytes(hierarchy.base, polygonFormatOf(*output_));
+        if (details) writeHierarchy(details->stream(), hierarchy);
+    } catch (const std::ios_base::failure&) {
+        throw OperationError(output_->string(), "writing failed; is the disk full? Nothing was left behind");
+    }
+    if (details) details->commit();
+    base.commit();
+    baseFolders.commit();
+    if (detailsFolders) detailsFolders->commit();
+}
+
+int Reverse::run(Console& console) {
+    const auto& input = arguments[0];
+    const MeshScheme& scheme = meshScheme(scheme_);
+    const DecomposeOptions options = decomposeOptions(scheme);
+    refuseBadPlaces();
+    const PolygonMesh mesh = readPolygonMesh(input);
+    const Hierarchy hierarchy = [&] {
+        try {
+            return decompose(mesh, scheme, options, console.progress());
+        } catch (const InputError& error) {
+            throw InputError(input.string(), error.what());
+        }
+    }();
+    const DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
+    write(hierarchy);
+    if (report.roundTrip > kMeshRoundTrip * report.diagonal)
+        console.say("the mesh comes back to " + std::to_string(report.roundTrip / report.diagonal) +
+                    " of its diagonal only");
+    if (!details_ && hierarchy.steps() > 0)
+        console.say("the details are not kept; --details FILE writes them");
+    tell(console, textOf(report), jsonOf(report));
+    return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Command> reverseCommand() { return std::make_unique<Reverse>(); }
+
+}  // namespace isowave::tools

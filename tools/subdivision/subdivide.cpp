@@ -1,0 +1,75 @@
+// isowave subdivide MESH -o OUT: a mesh, subdivided.
+#include "isowave/error.h"
+#include "subdivision/meshes/hierarchy.h"
+#include "subdivision/meshes/mesh_files.h"
+#include "tools/commands.h"
+#include "tools/console.h"
+#include "tools/output.h"
+#include "tools/report/hierarchy.h"
+#include "tools/subdivision/mesh_options.h"
+
+namespace isowave::tools {
+
+namespace {
+
+using namespace subdivision;
+
+class Subdivide : public Command {
+  public:
+    Subdivide()
+        : Command({"subdivide", "MESH",
+                   "a polygon mesh -> the same, subdivided by Catmull-Clark, Loop or Butterfly",
+                   "MESH is OBJ, OFF or PLY; so is the output, by its name."}) {
+        declareOutput("the mesh's file");
+        declareJson();
+        declareDepth(options_, "1", "how many subdivisions", depth_);
+        declareScheme(options_, scheme_);
+        declareCrease(options_, creaseAngle_);
+        declareQuiet();
+    }
+    bool needsOutput() const override { return true; }
+    int run(Console& console) override;
+
+  private:
+    PolygonMesh coarse() const;
+
+    int depth_ = 1;
+    std::string scheme_ = "catmull-clark";
+    std::optional<double> creaseAngle_;
+};
+
+PolygonMesh Subdivide::coarse() const {
+    PolygonMesh mesh = readPolygonMesh(arguments[0]);
+    requireManifold(mesh, arguments[0].string());
+    if (creaseAngle_) {
+        const auto found = creasesByAngle(mesh, Adjacency(mesh), *creaseAngle_);
+        mesh.creases.insert(mesh.creases.end(), found.begin(), found.end());
+    }
+    return mesh;
+}
+
+int Subdivide::run(Console& console) {
+    const MeshScheme& scheme = meshScheme(scheme_);
+    polygonFormatOf(*output_);  // a wrong name is found before the work
+    const PolygonMesh before = coarse();
+    const PolygonMesh mesh = [&] {
+        try {
+            return subdivided(before, scheme, depth_, console.progress());
+        } catch (const InputError& error) {
+            throw InputError(arguments[0].string(), error.what());
+        }
+    }();
+    OutputFile out(*output_);
+    writePolygonMesh(*output_, mesh);
+    out.commit();
+    const SubdivisionReport report{std::string(scheme.name), depth_, before.creases.size(),
+                                   mesh.vertexCount(), mesh.faceCount()};
+    tell(console, textOf(report), jsonOf(report));
+    return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Command> subdivideCommand() { return std::make_unique<Subdivide>(); }
+
+}  // namespace isowave::tools
