@@ -368,7 +368,7 @@ int main(int argc, char** argv) {
     InputOptions options;
     options.pixels = pixels;
     const Input ready = readInput(argv[1], options);
-    const Judge judge(input.polygons, rings, ready.shape.frame);
+    const Judge judge(input.polygons, rings, ready.shape->frame);
     const Rank dp = douglasPeucker(rings), vw = visvalingam(rings);
 
     fmt::print(
@@ -380,29 +380,30 @@ int main(int argc, char** argv) {
     judge.row("", "the input", rings);
     constexpr int kLastLevel = 6;
     std::vector<Ring> before;
-    climb(fit(ready.shape, Fit::distance), 2 * kLastLevel,
-          [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
-              if (facts.step % 2 || curves.rings.empty()) return;
-              const std::string level = std::to_string(facts.step / 2);
-              std::vector<Ring> own;
-              for (std::size_t r = 0; r < curves.rings.size(); ++r) own.push_back(curves.world(r));
-              if (!before.empty() && facts.points < pointsOf(rings)) {
-                  const std::vector<Method> methods = {{"isowave", own},
-                                                       {"isowave, thinned", cgal(before, facts.points)},
-                                                       {"Douglas-Peucker", best(rings, dp, facts.points)},
-                                                       {"Visvalingam", best(rings, vw, facts.points)},
-                                                       {"CGAL", cgal(rings, facts.points)}};
-                  for (const Method& method : methods) {
-                      // Below three points a ring CGAL does not go: then it has not what is compared.
-                      if (pointsOf(method.rings) > facts.points + facts.points / 10)
-                          fmt::print("| {} | {} | not below {} | | | | | | | |\n", level, method.name,
-                                     pointsOf(method.rings));
-                      else
-                          judge.row(level, method.name, method.rings);
-                  }
-                  if (facts.step == 2 * sheet.level && !sheet.path.empty())
-                      drawSheet(sheet.path, methods, sheet.window);
-              }
-              before = std::move(own);
-          });
+    traceSteps(fit(*ready.shape, Fit::distance), 2 * kLastLevel,
+               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+                   if (facts.step % 2 || curves.rings.empty()) return;
+                   const std::string level = std::to_string(facts.step / 2);
+                   std::vector<Ring> own;
+                   for (std::size_t r = 0; r < curves.rings.size(); ++r) own.push_back(curves.world(r));
+                   if (!before.empty() && facts.points < pointsOf(rings)) {
+                       const std::vector<Method> methods = {
+                           {"isowave", own},
+                           {"isowave, thinned", cgal(before, facts.points)},
+                           {"Douglas-Peucker", best(rings, dp, facts.points)},
+                           {"Visvalingam", best(rings, vw, facts.points)},
+                           {"CGAL", cgal(rings, facts.points)}};
+                       for (const Method& method : methods) {
+                           // Below three points a ring CGAL does not go: then it has not what is compared.
+                           if (pointsOf(method.rings) > facts.points + facts.points / 10)
+                               fmt::print("| {} | {} | not below {} | | | | | | | |\n", level, method.name,
+                                          pointsOf(method.rings));
+                           else
+                               judge.row(level, method.name, method.rings);
+                       }
+                       if (facts.step == 2 * sheet.level && !sheet.path.empty())
+                           drawSheet(sheet.path, methods, sheet.window);
+                   }
+                   before = std::move(own);
+               });
 }

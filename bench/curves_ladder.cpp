@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "curves2d/ladder.h"
+#include "isowave/curves.h"
 #include "tests/curves2d/validity.h"
 
 int main(int argc, char** argv) {
@@ -28,21 +28,19 @@ int main(int argc, char** argv) {
         "|\n"
         "|---|---|---|---|---|---|---|---|\n",
         input.kind, options.pixels);
-    RowField<float> field = fit(input.shape, input.fit);
-    input.shape = {};
     bool good = true;
     double area = 0;
-    const Ladder ladder = climb(std::move(field), std::nullopt,
-                                [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
-                                    if (f.step == 0) area = f.area;
-                                    const std::string wrong = validity::complaintOfMany(curves.rings);
-                                    good = good && wrong.empty();
-                                    fmt::print("| {} | {}x{} | {} | {}, {} | {} | {:+.3f} | {:.2f} | {} |\n",
-                                               stepName(f.step), f.domain[0], f.domain[1], f.controlPoints,
-                                               f.rings, f.holes, f.points, 100 * (f.area / area - 1),
-                                               f.rmsToLevel0 / input.pixel, wrong.empty() ? "yes" : wrong);
-                                    std::cout.flush();
-                                });
+    const double pixel = input.pixel;
+    const Ladder ladder = makeLadder(std::move(input), {}, [&](const LadderStep& step) {
+        const StepFacts& f = step.facts();
+        if (f.step == 0) area = f.area;
+        const std::string wrong = validity::complaintOfMany(step.curves().rings);
+        good = good && wrong.empty();
+        fmt::print("| {} | {}x{} | {} | {}, {} | {} | {:+.3f} | {:.2f} | {} |\n", step.name(), f.domain[0],
+                   f.domain[1], f.controlPoints, f.rings, f.holes, f.points, 100 * (f.area / area - 1),
+                   f.rmsToLevel0 / pixel, wrong.empty() ? "yes" : wrong);
+        std::cout.flush();
+    });
     fmt::print(
         "\n{} control points, {} coefficients (+{:.1f} %)\n", ladder.controlPoints, ladder.coefficients,
         100.0 * (static_cast<double>(ladder.coefficients) / static_cast<double>(ladder.controlPoints) - 1));

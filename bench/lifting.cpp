@@ -6,7 +6,6 @@ namespace isowave::bench {
 
 using subdivision::Index;
 using subdivision::kNone;
-using subdivision::Vec3;
 
 namespace {
 

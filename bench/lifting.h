@@ -28,8 +28,8 @@ class LiftingStep {
 
     // Fine points in the order of mesh_scheme.h: vertices, edges, faces. Apart and together in place: first the
     // coarse points, then the details.
-    void apart(std::vector<subdivision::Vec3>& fine) const;
-    void together(std::vector<subdivision::Vec3>& fine) const;
+    void apart(std::vector<Vec3>& fine) const;
+    void together(std::vector<Vec3>& fine) const;
     std::size_t coarseSize() const { return mesh_.vertices(); }
     std::size_t fineSize() const { return mesh_.vertices() + mesh_.edges() + mesh_.faces(); }
 
@@ -37,8 +37,8 @@ class LiftingStep {
     struct Lift {
         double a, b;
     };
-    void liftVertices(std::vector<subdivision::Vec3>& p, Lift lift, bool inverse) const;
-    void liftFaces(std::vector<subdivision::Vec3>& p, Lift lift, bool inverse) const;
+    void liftVertices(std::vector<Vec3>& p, Lift lift, bool inverse) const;
+    void liftFaces(std::vector<Vec3>& p, Lift lift, bool inverse) const;
 
     subdivision::Adjacency mesh_;
 };

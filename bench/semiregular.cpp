@@ -164,7 +164,7 @@ void relax(PolygonMesh& mesh, const Adjacency& adjacency, const std::vector<Vec3
 PolygonMesh refined(const PolygonMesh& coarse, const MeshScheme& scheme, const Surface& surface,
                     const Tree& tree) {
     const auto step = scheme.step(coarse, "");
-    PolygonMesh fine = step->refined();
+    PolygonMesh fine = step->fineMesh();
     fine.points = step->subdivide(coarse.points);
     const Adjacency adjacency(fine);
     auto normals = project(fine.points, surface, tree);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "subdivision/curves/curve.h"
+#include "subdivision/filters/masks.h"
 #include "subdivision/lattice/surface.h"
 
 namespace {

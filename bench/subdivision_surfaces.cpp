@@ -15,8 +15,8 @@
 #include <functional>
 #include <random>
 
-#include "isowave/error.h"
 #include "bench/lifting.h"
+#include "isowave/error.h"
 #include "subdivision/meshes/hierarchy.h"
 #include "subdivision/meshes/mesh_files.h"
 
@@ -45,7 +45,7 @@ std::vector<PolygonMesh> ladder(const PolygonMesh& mesh, const MeshScheme& schem
     Hierarchy hierarchy = decompose(mesh, scheme, "", levels);
     hierarchy.order = {};
     std::vector<PolygonMesh> meshes{hierarchy.base};
-    for (int k = 0; k < levels; ++k) meshes.push_back(scheme.step(meshes.back(), "")->refined());
+    for (int k = 0; k < levels; ++k) meshes.push_back(scheme.step(meshes.back(), "")->fineMesh());
     meshes.back().points = reconstruct(hierarchy).points;
     return meshes;
 }
@@ -184,7 +184,7 @@ void printTimes(const MeshScheme& scheme, std::string_view variant, int levels) 
                 addLine(lifting, "lifting", fine.size(), 0, down, up);
             }
         }
-        mesh = step->refined();
+        mesh = step->fineMesh();
     }
     for (const auto* each : {&times, &lifting}) {
         if (each->sizes.empty()) continue;

@@ -16,7 +16,9 @@
 #include <numbers>
 
 #include "analytic.h"
+#include "io/mesh/read.h"
 #include "multires.h"
+#include "polygonize/knot_insertion.h"
 #include "polygonize/level_iso.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/specks.h"
@@ -132,7 +134,7 @@ int main(int argc, char** argv) {
         for (const int refine : {1, 2}) {
             const std::string with = refine == 1 ? "" : " --refine 2";
             const std::vector<double> values =
-                thin.valuesOn(refine == 1 ? field : refineField(field), field.transform().voxelSize());
+                thin.valuesOn(refine == 1 ? field : insertKnots(field), field.transform().voxelSize());
             const Row plain =
                 counted("as it is" + with, polygonize(field, {.refine = refine}), node,
                         fmt::format("{:.1f} % of thin parts kept", 100 * shareInside(values, 0)));

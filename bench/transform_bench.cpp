@@ -23,8 +23,8 @@
 #include "polygonize/topology.h"
 #include "volume/fit.h"
 #include "volume/vdb_file.h"
-#include "wavelets/interval/interval.h"
 #include "wavelets/interval/batch.h"
+#include "wavelets/interval/interval.h"
 #include "wavelets/pyramid.h"
 #include "wavelets/pyramid_file.h"
 

@@ -1,26 +1,35 @@
-# isowave_module(NAME SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...])
-# One static library for each folder, `isowave_NAME`, also known as `isowave::NAME`.
+# isowave_module(NAME SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...] [GRIDS])
+# One static library for each folder, `isowave_NAME`, in the build also known as `isowave::NAME`; all files of the folder
+# belong to it. Installed by cmake/Install.cmake, which calls it isowave::part_NAME.
+# GRIDS: sources work on OpenVDB's grids; its headers are parsed once for all of them (4 s a source otherwise).
 function(isowave_module name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "GRIDS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target isowave_${name})
-  if(NOT arg_SOURCES)  # bootstrap: a folder with headers only
-    add_library(${target} INTERFACE)
-    add_library(isowave::${name} ALIAS ${target})
-    target_link_libraries(${target} INTERFACE ${arg_PUBLIC})
-    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-    set_property(GLOBAL APPEND PROPERTY ISOWAVE_MODULES ${target})
-    return()
-  endif()
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(isowave::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME part_${name} CXX_VISIBILITY_PRESET hidden)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/isowave>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   isowave_warnings(${target})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
-  set_property(GLOBAL APPEND PROPERTY ISOWAVE_MODULES ${target})
+  if(arg_GRIDS)
+    isowave_no_precompiled_alarms(${target})
+  endif()
+  if(arg_GRIDS AND name STREQUAL "volume")
+    target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/volume/vdb.h <fmt/format.h>)
+  elseif(arg_GRIDS)
+    target_precompile_headers(${target} REUSE_FROM isowave_volume)
+  endif()
+endfunction()
+
+# With precompiled headers g++ 12 forgets that std::string is a system header: GCC bug 105651, more false alarms.
+function(isowave_no_precompiled_alarms target)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
+  endif()
 endfunction()
 
 # Our warnings, for our own targets only; the libraries' headers are system headers to the compiler.
@@ -55,10 +64,7 @@ function(isowave_test name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h> ${arg_PRECOMPILE})
-  # With precompiled headers g++ 12 forgets that std::string is a system header: the same bug, more false alarms.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(${name} PRIVATE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
-  endif()
+  isowave_no_precompiled_alarms(${name})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()

@@ -11,8 +11,8 @@
 //   --meshes  where to put the meshes, for scripts/render
 //
 // Equal resolution: levels 1, 2, 3, voxels of 2, 4, 8; measured against the solid's surface.
-//   isowave     fitDistance -> analyse -> polygonize; specks removed, as `isowave lod` does
-//   refined and thinned   the same with refine = 2, then thin() to a quarter: about as many triangles
+//   isowave     fitDistance -> analyse -> lod::LevelMesher, which makes the meshes of `isowave lod`
+//   refined and thinned   the same with refine = 2, then decimate() to a quarter: about as many triangles
 //   volume kept   refined and thinned at the iso-value that gives the level the volume of level 0 (--preserve-volume)
 //   mean-pool   means of 2x2x2 distances, level by level, marching cubes; clamped to 4 voxels, as isowave's are, and to 16
 //   multires    openvdb::tools::MultiResGrid of the distances clamped to 4, volumeToMesh
@@ -25,7 +25,7 @@
 // Columns: genus and components of the mesh; volume against the surface's; distances in voxels of level 0, to the surface and
 // back from it; defects: edges without exactly two triangles that run through them in opposite directions, vertices whose
 // triangles are no single fan; pairs of triangles that cut each other; seconds of wall time from the distances, or level
-// 0's mesh, on.
+// 0's mesh, on, counting parts and handles included.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -35,18 +35,20 @@
 #include <iostream>
 #include <optional>
 
-#include "isowave/error.h"
 #include "base/heap.h"
+#include "io/mesh/write.h"
+#include "isowave/error.h"
+#include "lod/level_mesher.h"
 #include "marching.h"
 #include "multires.h"
-#include "simplify/budget.h"
 #include "polygonize/level_iso.h"
-#include "simplify/sample.h"
-#include "io/mesh/write.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/refit.h"
 #include "polygonize/specks.h"
 #include "rivals.h"
+#include "simplify/budget_chooser.h"
+#include "simplify/self_intersections.h"
+#include "simplify/triangle_subset.h"
 #include "solids.h"
 #include "volume/fit.h"
 #include "volume_error.h"
@@ -55,7 +57,7 @@
 namespace {
 
 using namespace isowave;
-constexpr int kLevels = 3, kStepsPerLevel = 3;
+constexpr int kLevels = 3;
 constexpr int kUsualVoxels = 128;
 constexpr std::size_t kFew = 30'000;  // triangles, for an rms
 constexpr std::size_t kOwn = 3;       // rows of isowave among those of a level, the first
@@ -213,7 +215,7 @@ class Bench {
             };
             const auto told = [&](const TriangleMesh& mesh) {
                 return fmt::format(" {:+.2f} %, {:.3f} |", 100 * (topologyOf(mesh).volume / truth - 1),
-                                   surface.sampledDistanceFrom(everyFew(mesh, kFew)).rms);
+                                   surface.sampledDistanceFrom(evenSubset(mesh, kFew)).rms);
             };
             const BSplineField refit = refitted(field, level0);
             const TriangleMesh finest = at(field, kFinest);
@@ -241,14 +243,14 @@ class Bench {
     void makeSteps(Lean lean) {
         Clock clock;
         double others = 0;  // all but levels
-        const BSplineField finest = fitDistance(*narrow_, fit_);
-        wavelets::analyse(finest, {}, {}, [&](int step, const BSplineField& field) {
-            TriangleMesh mesh = polygonize(field);
-            removeSpecks(mesh, step == 0 ? 0 : nodeVolume(field.transform()));
+        const Progress silent;
+        StageClock stages;
+        lod::LevelMesher mesher({}, std::nullopt, lod::LevelMesher::Facts::few, silent, stages);
+        wavelets::descend(fitDistance(*narrow_, fit_), {}, {}, [&](int step, const BSplineField& field) {
+            lod::LevelMesh level = mesher.make(step, field);
             if (step % kStepsPerLevel == 0) stepSeconds_.push_back(clock.seconds() - others);
             const Clock counting;
-            if (mesh.triangles.empty()) return;
-            const MeshTopology topology = topologyOf(mesh);
+            if (level.mesh.triangles.empty()) return;
             if (step == 0) volume0_ = topologyOf(fine(field, 0)).volume;
             if (lean == Lean::yes && step % kStepsPerLevel == 0 && step > 0 &&
                 step <= kLevels * kStepsPerLevel) {
@@ -264,7 +266,8 @@ class Bench {
                 volumeKept_.push_back(
                     refinedAndThinned(field, iso, stepSeconds_.back() + choosing.seconds()));
             }
-            steps_.push_back({step, std::move(mesh), topology, field.transform().voxelSize().length()});
+            steps_.push_back({step, std::move(level.mesh), std::move(level.report.topology),
+                              field.transform().voxelSize().length()});
             others += counting.seconds();
         });
     }
@@ -282,7 +285,7 @@ class Bench {
         const Clock clock;
         TriangleMesh mesh = fine(field, iso);
         removeSpecks(mesh, nodeVolume(field.transform()));
-        mesh = thin(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / (kRefine * kRefine));
+        mesh = decimate(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / (kRefine * kRefine));
         return {std::move(mesh), secondsBefore + clock.seconds()};
     }
 

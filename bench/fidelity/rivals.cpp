@@ -44,7 +44,9 @@ TriangleMesh meshOf(Surface& surface) {
 }
 
 // What isowave's own budgets begin with.
-TriangleMesh lindstromTurk(const TriangleMesh& mesh, std::int64_t triangles) { return thin(mesh, triangles); }
+TriangleMesh lindstromTurk(const TriangleMesh& mesh, std::int64_t triangles) {
+    return decimate(mesh, triangles);
+}
 
 TriangleMesh garlandHeckbert(const TriangleMesh& mesh, std::int64_t triangles) {
     Surface surface = surfaceOf(mesh);

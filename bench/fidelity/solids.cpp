@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "analytic.h"
+#include "io/mesh/read.h"
 #include "marching.h"
 #include "volume/distance.h"
 #include "volume/mesh_repair.h"

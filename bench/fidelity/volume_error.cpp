@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "polygonize/topology.h"
+#include "simplify/distance.h"
 
 namespace isowave::bench {
 namespace {

@@ -5,7 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "simplify/measure.h"
 #include "solids.h"
 #include "volume/field.h"
 

@@ -84,7 +84,7 @@ Dense synthesised(Dense& coarse, Dense& details, int axis, const CoordBBox& box)
 
 AnalysisFilters cutFilters(int reach) {
     // Far from both ends the rows of the bounded analysis are the infinite filters: they fall by 1.8x every two
-    // taps. c_j lies at the interval's fine point 2j - 1, d_k at 2k + 2 (interval_matrices.h); `left` is column 0.
+    // taps. c_j lies at the interval's fine point 2j - 1, d_k at 2k + 2 (interval/matrices.h); `left` is column 0.
     constexpr int kLong = 80, kMiddle = kLong / 2;
     const wavelets::Matrix map = wavelets::analysisMap(kLong);
     AnalysisFilters filters{reach, {}, {}};

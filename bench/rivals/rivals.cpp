@@ -10,14 +10,15 @@
 #include <optional>
 
 #include "accessory.h"
-#include "isowave/error.h"
 #include "chui.h"
 #include "coarser.h"
-#include "part.h"
-#include "simplify/measure.h"
+#include "io/mesh/read.h"
 #include "io/mesh/write.h"
+#include "isowave/error.h"
+#include "part.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
+#include "simplify/distance.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
 #include "volume/mesh_repair.h"
