@@ -18,9 +18,11 @@
 // Why the mesh of any sign pattern is a closed, oriented 2-manifold:
 // (1) A segment lies on one face, is used by the two cells of that face, and they run along it in opposite
 //     directions. No other two vertices of a face are joined: diagonals never lie in a face.
-// (2) A diagonal joins vertices of one loop of one cell that share no face, so no other cell can have it; inside
+// (2) A diagonal joins vertices of one loop of one cell that share no face, so no other cell can have it;
+// inside
 //     the loop's triangulation it has two triangles.
-// (3) Around a lattice edge lie four cells and four faces; each cell has one loop through the edge's vertex, so
+// (3) Around a lattice edge lie four cells and four faces; each cell has one loop through the edge's vertex,
+// so
 //     the triangles at the vertex are four sectors joined at four segments: one fan.
 //
 // Asymptotic deciders (Nielson and Hamann 1991; Chernyaev's MC33 1995) choose between separated and joined by

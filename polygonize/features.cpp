@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/point_box.h"
 #include "polygonize/lattice_value.h"
 #include "polygonize/persistence.h"
-#include "volume/distance.h"
+#include "volume/distance_mesh.h"
 #include "volume/mesh_nearest.h"
 
 namespace isowave {
@@ -15,28 +16,16 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::Vec3d;
 
-struct Bounds {
-    Vec3d low{INFINITY}, high{-INFINITY};
-    explicit Bounds(const TriangleMesh& mesh) {
-        for (const Triangle& t : mesh.triangles)
-            for (const std::uint32_t v : t)
-                for (int a = 0; a < 3; ++a) {
-                    low[a] = std::min(low[a], mesh.points[v][a]);
-                    high[a] = std::max(high[a], mesh.points[v][a]);
-                }
-    }
-};
-
-// The lattice's box: what the mesh's box becomes, made larger by the reach and one point more, so that beyond it
-// nothing is within reach.
-CoordBBox boxOf(const Bounds& bounds, const openvdb::math::Transform& transform, int reach) {
-    return {Coord::floor(transform.worldToIndex(bounds.low)).offsetBy(-reach - 1),
-            Coord::ceil(transform.worldToIndex(bounds.high)).offsetBy(reach + 1)};
+// The lattice's box: what the mesh's box becomes, made larger by the reach and one point more, so that beyond
+// it nothing is within reach.
+CoordBBox boxOf(const PointBox& bounds, const openvdb::math::Transform& transform, int reach) {
+    return {Coord::floor(transform.worldToIndex(Vec3d(bounds.low.data()))).offsetBy(-reach - 1),
+            Coord::ceil(transform.worldToIndex(Vec3d(bounds.high.data()))).offsetBy(reach + 1)};
 }
 
-double pointsFor(const Bounds& bounds, double spacing, int reach) {
+double pointsFor(const PointBox& bounds, double spacing, int reach) {
     double points = 1;
-    for (int a = 0; a < 3; ++a) points *= (bounds.high[a] - bounds.low[a]) / spacing + 2 * (reach + 2);
+    for (int a = 0; a < 3; ++a) points *= bounds.extent(a) / spacing + 2 * (reach + 2);
     return points;
 }
 
@@ -54,9 +43,9 @@ LatticeFunction denseDistance(const openvdb::FloatGrid& distance, const CoordBBo
     return d;
 }
 
-// A lattice point beside the middle of a part, a hole, a ring -> the middle, and its distance to the surface: the largest
-// within the half diagonal of a voxel, which is how far the middle can be from the lattice. By steps along the axes,
-// each shorter than the distance, so that none crosses the surface.
+// A lattice point beside the middle of a part, a hole, a ring -> the middle, and its distance to the surface:
+// the largest within the half diagonal of a voxel, which is how far the middle can be from the lattice. By
+// steps along the axes, each shorter than the distance, so that none crosses the surface.
 struct Middle {
     Vec3d at;  // index space
     double distance;
@@ -106,7 +95,7 @@ class MiddleFinder {
 
 SolidFeatures featuresOf(const TriangleMesh& mesh, const FeatureOptions& options, const Progress& progress) {
     SolidFeatures features;
-    const Bounds bounds(mesh);
+    const PointBox bounds = boxAround(mesh);
     features.spacing = options.spacing;
     constexpr double kCoarser = 1.05;
     while (pointsFor(bounds, features.spacing, options.reach) > options.mostPoints)
@@ -152,11 +141,8 @@ SolidSurvival survivalOf(const SolidFeatures& features, const BSplineField& leve
         return latticeInterpolated(accessor, level.transform().worldToIndex(Vec3d(p[0], p[1], p[2]))) < iso;
     };
     const auto isRemoved = [&](const Point& p) {
-        return std::any_of(removed.begin(), removed.end(), [&](const PointBox& box) {
-            bool in = true;
-            for (int a = 0; a < 3; ++a) in = in && box.low[a] <= p[a] && p[a] <= box.high[a];
-            return in;
-        });
+        return std::any_of(removed.begin(), removed.end(),
+                           [&](const PointBox& box) { return box.contains(p); });
     };
     const auto take = [](Survival& s, const Feature& f, bool closed, bool torn) {
         if (closed) {

@@ -1,16 +1,17 @@
-// How large the parts, holes and cavities of a solid are, and which of them a level still has.
+// The topological features of a solid, its parts, handles and cavities: how large they are, and which of them
+// a level still has.
 //
-// d is the signed distance to the solid's surface, negative inside; S_t = { d <= t } is the solid made thicker by t
-// (thinner for t < 0). Each feature of the solid S_0 is a class of persistent homology of d, there for
-// birth <= 0 < death (polygonize/persistence.h):
+// d is the signed distance to the solid's surface, negative inside; S_t = { d <= t } is the solid made
+// thicker by t (thinner for t < 0). Each feature of the solid S_0 is a class of persistent homology of d,
+// there for birth <= 0 < death (polygonize/persistence.h):
 //
 //   part     radius = -birth: the largest ball in it             gap = death: half the way to what it would merge with
 //   handle   radius = death: the hole closes when S grows by it  thinnest = -birth: half the thinnest place of the ring
 //   cavity   radius = death: the largest ball in it              thinnest = -birth: half the thinnest place of its wall
 //
-// A round hole through a plate has its own radius, however thin the plate; a slot has half its width. Classes are found
-// on a lattice, so that what is narrower than its spacing may be missed; radii are then the exact distances to the mesh
-// from the middle of the hole, near the lattice point that the class ends at.
+// A round hole through a plate has its own radius, however thin the plate; a slot has half its width. Classes
+// are found on a lattice, so that what is narrower than its spacing may be missed; radii are then the exact
+// distances to the mesh from the middle of the hole, near the lattice point that the class ends at.
 #pragma once
 
 #include <array>
@@ -18,10 +19,10 @@
 #include <string>
 #include <vector>
 
+#include "isowave/mesh.h"
 #include "isowave/progress.h"
 #include "polygonize/specks.h"
 #include "volume/field.h"
-#include "isowave/mesh.h"
 
 namespace isowave {
 
@@ -52,17 +53,18 @@ SolidFeatures featuresOf(const TriangleMesh& mesh, const FeatureOptions& options
 // What became of the features of one kind.
 struct Survival {
     std::int64_t survived = 0, closed = 0, torn = 0;  // torn: the ring or the wall has opened
-    // World units. Of those that survived the smallest radius, of those that were closed (parts: that vanished)
-    // the largest.
+    // World units. Of those that survived the smallest radius, of those that were closed (parts: that
+    // vanished) the largest.
     std::optional<double> smallestSurviving, largestVanished;
 };
 struct SolidSurvival {
     Survival parts, handles, cavities;
 };
 
-// Asks a level's surface F = iso at the cores: a part is there while its core is inside; a handle or a cavity is open
-// while its core is outside, and whole while its weakest place is inside. Exact about these points; an estimate of the
-// topology where the surface moves by more than a feature's size. removed: boxes of the components that removeSpecks()
+// Asks a level's surface F = iso at the cores: a part is there while its core is inside; a handle or a cavity
+// is open while its core is outside, and whole while its weakest place is inside. Exact about these points;
+// an estimate of the topology where the surface moves by more than a feature's size. removed: boxes of the
+// components that removeSpecks()
 // took: what has its core in one of them is gone.
 SolidSurvival survivalOf(const SolidFeatures& features, const BSplineField& level, double iso,
                          const std::vector<PointBox>& removed = {});

@@ -8,8 +8,9 @@
 
 namespace isowave {
 
-// The trilinear interpolation, at index-space point x, of F at the 8 lattice points around it. The mesh sees the field
-// at lattice points only: a wall, or a hole, between two of them is not in the mesh, although F has it.
+// The trilinear interpolation, at index-space point x, of F at the 8 lattice points around it. The mesh sees
+// the field at lattice points only: a wall, or a hole, between two of them is not in the mesh, although F has
+// it.
 // c: control points. On an axis, t beyond lattice point i of the cell:
 //   (1-t) (c[i-1] + 4 c[i] + c[i+1])/6 + t (c[i] + 4 c[i+1] + c[i+2])/6
 inline double latticeInterpolated(const openvdb::FloatGrid::ConstUnsafeAccessor& c, const openvdb::Vec3d& x) {

@@ -66,7 +66,8 @@ VolumeMatch isoOfVolume(const std::function<double(double iso)>& volumeAt, doubl
             break;
         }
         if (std::abs(far) >= limit) break;
-        // By the secant, half as far again, so that the root comes to lie between; at least twice, at most ten times.
+        // By the secant, half as far again, so that the root comes to lie between; at least twice, at most
+        // ten times.
         const double slope = (farError - nearError) / (far - near);
         const double reach = slope > 0 ? std::abs(far - 1.5 * farError / slope) : limit;
         near = far;
@@ -123,8 +124,8 @@ std::vector<Run> runsOf(const Shape& shape, const Progress& progress) {
     return runs;
 }
 
-// Index-space gradient -> a vector along the world normal, but for a rotation: dot products are the world's. For
-// axes that are orthogonal, as those of images and meshes are.
+// Index-space gradient -> a vector along the world normal, but for a rotation: dot products are the world's.
+// For axes that are orthogonal, as those of images and meshes are.
 Vec3d normalAt(const BSplineField& field, const Vec3d& x, const Vec3d& spacing) {
     Vec3d normal = evaluateGradient(field, x) / spacing;
     normal.normalize();
@@ -169,8 +170,8 @@ ThinParts::ThinParts(const BSplineField& finest, const Progress& progress)
         if (sample.length > 0) samples_.push_back(sample);
 }
 
-// Whether the wall or rod goes on in that direction, one voxel of the level away: whether there is solid beside the
-// sample's tangent plane, up to half a voxel off it.
+// Whether the wall or rod goes on in that direction, one voxel of the level away: whether there is solid
+// beside the sample's tangent plane, up to half a voxel off it.
 bool ThinParts::goesOn(const Sample& sample, const Vec3d& direction, const Vec3d& levelSpacing) const {
     constexpr int kSteps = 4;  // each side of the plane
     const auto inside = shape_->getConstUnsafeAccessor();
@@ -182,8 +183,8 @@ bool ThinParts::goesOn(const Sample& sample, const Vec3d& direction, const Vec3d
     return false;
 }
 
-// In every direction it goes on both ways or neither, and in one it does: so the rim of a wall, which is on one side of
-// the sample, and the end of a rod are no heart of it, and a crumb is not either.
+// In every direction it goes on both ways or neither, and in one it does: so the rim of a wall, which is on
+// one side of the sample, and the end of a rod are no heart of it, and a crumb is not either.
 bool ThinParts::isHeart(const Sample& sample, const Vec3d& levelSpacing) const {
     constexpr int kDirections = 6;
     const Vec3d& n = sample.normal;

@@ -1,5 +1,5 @@
-// Which iso-value a level's surface is taken at: 0 unless something is to be kept that the level alone would lose.
-// F is negative inside, so a positive iso-value makes the solid thicker.
+// The iso-value at which a level's surface is taken: 0, unless it is chosen to keep the volume or the thin
+// parts of level 0. F is negative inside, so a positive iso-value makes the solid thicker.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace isowave {
 
-// An iso-value stays within this share of K. Nearer to K the level set no longer follows the surface but the ends of
-// the band, where the field is cut off to ±K, and the ripple there (4 % of K is common) becomes surface.
+// An iso-value stays within this share of K. Nearer to K the level set no longer follows the surface but the
+// ends of the band, where the field is cut off to ±K, and the ripple there (4 % of K is common) becomes
+// surface.
 inline constexpr double kIsoLimit = 0.75;
 
 // ---- the volume of another level
@@ -23,31 +24,32 @@ struct VolumeMatch {
     int evaluations = 0;  // of volumeAt
 };
 
-// The iso-value in [-limit, limit] at which volumeAt(iso) is `target` to `tolerance` (relative). volumeAt grows with
-// iso, being the volume of { F < iso }; small steps (a speck that begins to count, a cell whose pattern changes) do no
-// harm but may leave more than the tolerance. Where the target lies beyond the limit: the limit.
-// A bracket grows from 0 by secants; TOMS 748 (Alefeld, Potra and Shi 1995) closes it. 4 to 8 evaluations.
+// The iso-value in [-limit, limit] at which volumeAt(iso) is `target` to `tolerance` (relative). volumeAt
+// grows with iso, being the volume of { F < iso }; small steps (a speck that begins to count, a cell whose
+// pattern changes) do no harm but may leave more than the tolerance. Where the target lies beyond the limit:
+// the limit. A bracket grows from 0 by secants; TOMS 748 (Alefeld, Potra and Shi 1995) closes it. 4 to 8
+// evaluations.
 // REQUIRES: target > 0, tolerance > 0.
 VolumeMatch isoOfVolume(const std::function<double(double iso)>& volumeAt, double target, double limit,
                         double tolerance = 1e-5);
 
 // ---- thin parts
 
-// Points in the middle of everything thin in a solid: of each run of lattice points inside, along each axis, that is
-// short and leaves the solid through faces that look away from each other. Walls, sheets, struts, rods have them;
-// edges, corners and what is thick have not.
+// Points in the middle of everything thin in a solid: of each run of lattice points inside, along each axis,
+// that is short and leaves the solid through faces that look away from each other. Walls, sheets, struts,
+// rods have them; edges, corners and what is thick have not.
 class ThinParts {
   public:
     // A run counts when it is at most this long in voxels of the level that is asked about: thicker walls
     // keep their middle at any level.
     static constexpr double kThin = 2;
-    // and when the cosine between the outward normals at its ends is at most this (135 degrees): the two sides of a
-    // right-angled edge make 0.
+    // and when the cosine between the outward normals at its ends is at most this (135 degrees): the two
+    // sides of a right-angled edge make 0.
     static constexpr double kOpposite = -0.7;
     // Of so many runs, evenly chosen, samples are made.
     static constexpr std::size_t kMostSamples = 200'000;
-    // The share that --protect-thin keeps. The last hundredth is places where walls meet and bend; to keep nine tenths of
-    // it, too, asks for half as much thickening again (docs/topology.md).
+    // The share that --protect-thin keeps. The last hundredth is places where walls meet and bend; to keep
+    // nine tenths of it, too, asks for half as much thickening again (docs/topology.md).
     static constexpr double kShare = 0.99;
 
     // finest: the field of step 0.
@@ -55,10 +57,11 @@ class ThinParts {
 
     std::size_t size() const { return samples_.size(); }
 
-    // F, latticeInterpolated(), at the samples that are thin for a level and the heart of what is thin, ascending. Rims of
-    // walls and ends of rods, up to one voxel of the level wide, are left out: they draw back at every level, and
-    // nothing tears by that.
-    // level: a step of the same solid, refineField()ed as often as its mesh will be. spacing: of the step, before that.
+    // F, latticeInterpolated(), at the samples that are thin for a level and the heart of what is thin,
+    // ascending. Rims of walls and ends of rods, up to one voxel of the level wide, are left out: they draw
+    // back at every level, and nothing tears by that.
+    // level: a step of the same solid, with knots inserted as often as its mesh will have. spacing: of the
+    // step, before that.
     std::vector<double> valuesOn(const BSplineField& level, const openvdb::Vec3d& spacing,
                                  const Progress& progress = {}) const;
 

@@ -7,9 +7,10 @@
 //   bound squares the critical edges that the gradient takes the boundary of each remaining critical square to
 //   reduce        the matrix of these: dimension 1
 //
-// Cells have doubled coordinates: point (x, y, z) is (2x, 2y, 2z), and an odd coordinate spans two points. The order of
-// points is that of (value, index). A cell belongs to the star of its last point, and cells are ordered by their star
-// and then by `time`, the order in which `pair` built the star up; so a cell comes after all its faces.
+// Cells have doubled coordinates: point (x, y, z) is (2x, 2y, 2z), and an odd coordinate spans two points.
+// The order of points is that of (value, index). A cell belongs to the star of its last point, and cells are
+// ordered by their star and then by `time`, the order in which `pair` built the star up; so a cell comes
+// after all its faces.
 #include "polygonize/persistence.h"
 
 #include <tbb/parallel_for.h>
@@ -28,9 +29,10 @@ namespace {
 using openvdb::Coord;
 using Cell = std::int64_t;  // index into the doubled lattice
 
-// ------------------------------------------------------------------------------------------- a star's cells
+// ---- a star's cells
 
-// The cells around a point are numbered (dx + 1) * 9 + (dy + 1) * 3 + dz + 1 by their offset in doubled coordinates.
+// The cells around a point are numbered (dx + 1) * 9 + (dy + 1) * 3 + dz + 1 by their offset in doubled
+// coordinates.
 constexpr int kStar = 27, kCentre = 13;
 constexpr std::array<int, 3> offsetOf(int i) { return {i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1}; }
 
@@ -65,7 +67,7 @@ struct StarTables {
 };
 constexpr StarTables kTables;
 
-// ------------------------------------------------------------------------------------------- the gradient
+// ---- the gradient
 
 // What is known of a cell: whom it is paired with, and when its star took it in.
 // A pair joins a cell and a face of it; it is stored at both, as the direction to the other one.
@@ -183,9 +185,9 @@ void Gradient::pair(Cell centre, int low, int high, int time) {
         }
 }
 
-// Builds the star up by expansions: a cell that has exactly one face in the star that is not there yet comes with
-// that face, as a pair, which does not change the homotopy type. Where there is none, a cell without such
-// faces comes alone: it is critical.
+// Builds the star up by expansions: a cell that has exactly one face in the star that is not there yet comes
+// with that face, as a pair, which does not change the homotopy type. Where there is none, a cell without
+// such faces comes alone: it is critical.
 // invariant: `missing` are the star's cells that are not there yet.
 void Gradient::pairStar(std::int64_t point, const Coord& at, std::array<std::vector<Critical>, 4>& critical) {
     const std::uint32_t earlier = earlierAround(point, at);
@@ -237,7 +239,7 @@ Gradient::Gradient(const LatticeFunction& f, float last, const Progress& progres
     }
 }
 
-// ------------------------------------------------------------------------------------------- unions
+// ---- unions
 
 class Basins {
   public:
@@ -260,7 +262,7 @@ std::unordered_map<Cell, std::size_t> positionsOf(const std::vector<Critical>& c
     return positions;
 }
 
-// ------------------------------------------------------------------------------------------- the classes
+// ---- the classes
 
 class Classes {
   public:
@@ -322,7 +324,8 @@ class Classes {
             if (basins.rootOf(i) == i) add(0, points[i].star, PersistentClass::kNever);
     }
 
-    // Every cube is critical or paired with a square, behind which is the next cube on the way up, or nothing.
+    // Every cube is critical or paired with a square, behind which is the next cube on the way up, or
+    // nothing.
     Cell maximumAbove(Cell cube) const {
         while (cube != Gradient::kNone && !gradient_.isCritical(cube)) {
             const Cell square = gradient_.partner(cube), from = cube;
@@ -333,8 +336,8 @@ class Classes {
         return cube;
     }
 
-    // What is beyond the complex is one more cube, which comes last. negative_: the squares that join no cubes:
-    // each ends a class of dimension 1.
+    // What is beyond the complex is one more cube, which comes last. negative_: the squares that join no
+    // cubes: each ends a class of dimension 1.
     void joinCubes() {
         const auto& squares = gradient_.critical(2);
         const auto& cubes = gradient_.critical(3);
@@ -370,9 +373,9 @@ class Classes {
         return a.star != b.star ? gradient_.before(a.star, b.star) : a.time < b.time;
     }
 
-    // The boundary of a square with every edge that is paired with a square replaced by the rest of that square's
-    // boundary, until none is: modulo 2, and the last edge first, so that each is met once. Edges that are paired
-    // with a point lead nowhere. Returns positions of positive critical edges, ascending.
+    // The boundary of a square with every edge that is paired with a square replaced by the rest of that
+    // square's boundary, until none is: modulo 2, and the last edge first, so that each is met once. Edges
+    // that are paired with a point lead nowhere. Returns positions of positive critical edges, ascending.
     std::vector<std::size_t> boundaryOf(Cell square) const {
         const auto later = [&](const Place& a, const Place& b) { return comesBefore(a, b); };
         std::priority_queue<Place, std::vector<Place>, decltype(later)> chain(later);
@@ -404,8 +407,8 @@ class Classes {
         return boundary;
     }
 
-    // Columns are negative squares in their order, rows positive edges; a column's last row, once no earlier column
-    // has it, is the edge at which the class began that the square ends.
+    // Columns are negative squares in their order, rows positive edges; a column's last row, once no earlier
+    // column has it, is the edge at which the class began that the square ends.
     void boundSquaresAndReduce() {
         const auto& edges = gradient_.critical(1);
         const auto& squares = gradient_.critical(2);

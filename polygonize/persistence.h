@@ -1,11 +1,11 @@
-// Which parts, handles and cavities the sets { d <= t } have, from which t to which, and where they begin and end:
-// persistent homology of a function on a lattice.
+// Which parts, handles and cavities the sets { d <= t } have, from which t to which, and where they begin and
+// end: persistent homology of a function on a lattice.
 //
-// H. Edelsbrunner, D. Letscher, A. Zomorodian: "Topological persistence and simplification", 2002. Computed on the
-// discrete gradient of V. Robins, P. J. Wood, A. P. Sheppard: "Theory and algorithms for constructing discrete
-// Morse complexes from grayscale digital images", 2011. For d the signed distance to a solid's surface it gives
-// the sizes of its grains, throats and pores: O. Delgado-Friedrichs, V. Robins, A. Sheppard: "Skeletonization and
-// partitioning of digital images using discrete Morse theory", 2015.
+// H. Edelsbrunner, D. Letscher, A. Zomorodian: "Topological persistence and simplification", 2002. Computed
+// on the discrete gradient of V. Robins, P. J. Wood, A. P. Sheppard: "Theory and algorithms for constructing
+// discrete Morse complexes from grayscale digital images", 2011. For d the signed distance to a solid's
+// surface it gives the sizes of its grains, throats and pores: O. Delgado-Friedrichs, V. Robins, A. Sheppard:
+// "Skeletonization and partitioning of digital images using discrete Morse theory", 2015.
 #pragma once
 
 #include <cstdint>
@@ -41,9 +41,9 @@ struct PersistentClass {
                  // kNever: not up to `last`
 };
 
-// The classes that are there at t = `at`, and then up to t = `last`: birth <= at < death. { values <= t } is the union
-// of the lattice's points, edges, squares and cubes all of whose corners are <= t. In the order of dimension, birth,
-// birthPoint. About 1 us a point with a value <= last.
+// The classes that are there at t = `at`, and then up to t = `last`: birth <= at < death. { values <= t } is
+// the union of the lattice's points, edges, squares and cubes all of whose corners are <= t. In the order of
+// dimension, birth, birthPoint. About 1 us a point with a value <= last.
 // REQUIRES: finite values; at <= last; each size >= 1, at most 2^31 cells.
 std::vector<PersistentClass> classesAt(const LatticeFunction& function, float at, float last,
                                        const Progress& progress = {});

@@ -10,6 +10,7 @@
 //
 // F here is the field less the iso-value: a ShiftedField hands out its control points, c - iso.
 #include "polygonize/polygonize.h"
+#include "polygonize/knot_insertion.h"
 
 #include <tbb/parallel_for.h>
 
@@ -55,8 +56,8 @@ void forEachBit(Word word, const Body& body) {
     for (; word != 0; word &= word - 1) body(std::countr_zero(word));
 }
 
-// The control points c - iso. Float32's difference is 0 only where c = iso and has the sign of c - iso elsewhere
-// (gradual underflow), so the shift moves no sign.
+// The control points c - iso. Float32's difference is 0 only where c = iso and has the sign of c - iso
+// elsewhere (gradual underflow), so the shift moves no sign.
 class ShiftedField {
   public:
     ShiftedField(const BSplineField& field, double iso)
@@ -75,7 +76,7 @@ class ShiftedField {
     float iso_;
 };
 
-// ---------------------------------------------------------------------------------------------------- sample
+// ---- sample
 
 [[noreturn]] void throwNotFinite(const PaddedBlock& block, const Coord& origin) {
     for (int x = -1; x < kBlock + 2; ++x)
@@ -131,7 +132,7 @@ std::vector<Block> sample(const ShiftedField& field, const Progress& progress) {
     return blocks;
 }
 
-// ----------------------------------------------------------------------------------------------------- cross
+// ---- cross
 
 // Block -> its index: one voxel a block.
 void linkBlocks(std::vector<Block>& blocks, const ShiftedField& field, const Progress& progress) {
@@ -241,7 +242,7 @@ void number(std::vector<Block>& blocks, TriangleMesh& mesh) {
     mesh.triangles.resize(static_cast<std::size_t>(triangles));
 }
 
-// ----------------------------------------------------------------------------------------------------- place
+// ---- place
 
 // a + bt + ct^2 + dt^3
 struct Cubic {
@@ -384,7 +385,7 @@ void place(const std::vector<Block>& blocks, const ShiftedField& field, const To
     });
 }
 
-// --------------------------------------------------------------------------------------------------- connect
+// ---- connect
 
 void connect(const std::vector<Block>& blocks, bool mirrored, const Progress& progress, TriangleMesh& mesh) {
     const CellTable& table = cellTable();
@@ -423,7 +424,7 @@ TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& opti
     if (options.refine > 1) {
         PolygonizeOptions rest = options;
         rest.refine /= 2;
-        return polygonize(refineField(field, progress), rest, progress);
+        return polygonize(insertKnots(field, progress), rest, progress);
     }
     constexpr std::string_view kStage = "polygonizing";
     const ShiftedField shifted(field, options.iso);

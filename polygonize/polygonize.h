@@ -1,42 +1,40 @@
 // A field -> a closed, oriented 2-manifold mesh of its zero set.
 #pragma once
 
+#include "isowave/mesh.h"
 #include "isowave/progress.h"
 #include "volume/field.h"
-#include "isowave/mesh.h"
 
 namespace isowave {
 
 struct PolygonizeOptions {
-    int refine = 1;               // samples of a node along each axis: 1, 2 or 4 (memory grows with its cube)
-    double rootTolerance = 1e-6;  // of a sample edge: how close a vertex lies to a sign change of the spline
-    double rootMargin =
-        1e-3;        // of a sample edge: vertices stay this far from lattice points (STL is float32)
-    double iso = 0;  // in units of the field, -K < iso < K: the surface is where F = iso (0.5 = outside of
-                     // where F = 0, so the solid is thicker); rounded to float32
+    // Samples of a node along each axis: 1, 2 or 4. Memory grows with its cube.
+    int refine = 1;
+    // Of a sample edge: how close a vertex lies to a sign change of the spline.
+    double rootTolerance = 1e-6;
+    // Of a sample edge: vertices stay this far from lattice points (STL is float32).
+    double rootMargin = 1e-3;
+    // In units of the field, -K < iso < K: the surface is where F = iso (0.5 = outside of where F = 0, so the
+    // solid is thicker). Rounded to float32.
+    double iso = 0;
 };
 
 // The zero set of F - iso, F the spline itself (not a linear interpolation of samples): lattice values by
-// (1,4,1)/6 on each axis, one vertex on each lattice edge whose ends differ in sign, placed on a root of the cubic
-// along it. Value >= 0 counts as outside. The B-splines sum to 1, so F - iso is the spline with the control
-// points c - iso, and everything that is said of F below holds of it. Normals are the spline's gradient in world coordinates; triangles
-// are counter-clockwise seen from outside also when the transform mirrors. Vertices and triangles come in an
-// order that does not depend on the number of threads.
-// (1) The mesh is closed, oriented and 2-manifold for any values in the grid (polygonize/cell_table.h says why),
+// (1,4,1)/6 on each axis, one vertex on each lattice edge whose ends differ in sign, placed on a root of the
+// cubic along it. Value >= 0 counts as outside. The B-splines sum to 1, so F - iso is the spline with the
+// control points c - iso, and everything that is said of F below holds of it. Normals are the spline's
+// gradient in world coordinates; triangles are counter-clockwise seen from outside also when the transform
+// mirrors. Vertices and triangles come in an order that does not depend on the number of threads.
+// (1) The mesh is closed, oriented and 2-manifold for any values in the grid (polygonize/cell_table.h says
+// why),
 //     also for one that is no field at all: control points outside I need not even keep their sign.
-// (2) Within rootTolerance of a vertex along its edge the spline changes sign, except where rootMargin moved it.
+// (2) Within rootTolerance of a vertex along its edge the spline changes sign, except where rootMargin moved
+// it.
 // (3) Every normal has length 1 to float32.
-// An empty field gives an empty mesh. Throws OperationError past 2^31 - 1 vertices or triangles, InputError for a
-// control point that is not finite and for a transform that is not affine or not invertible.
+// An empty field gives an empty mesh. Throws OperationError past 2^31 - 1 vertices or triangles, InputError
+// for a control point that is not finite and for a transform that is not affine or not invertible.
 // REQUIRES: refine is 1, 2 or 4; 0 <= rootMargin < 0.5; rootTolerance > 0; |iso| < K.
 TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& options = {},
                         const Progress& progress = {});
-
-// The same function on a lattice twice as fine on each axis, by knot insertion: evaluate(refineField(f), 2x)
-// = evaluate(f, x) to float32 rounding of the new control points, and world positions stay. On each axis, with c
-// coarse and coarse j at fine 2j:   fine 2i = (c[i-1] + 6 c[i] + c[i+1]) / 8,   fine 2i+1 = (c[i] + c[i+1]) / 2.
-// I becomes the control points that depend on one in I (or are no longer constant); K stays. Signs of the
-// shape are those of F at the fine lattice points, there being no input between the coarse ones.
-BSplineField refineField(const BSplineField& field, const Progress& progress = {});
 
 }  // namespace isowave

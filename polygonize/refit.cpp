@@ -1,7 +1,8 @@
-// Passes: locate (the samples by the leaf that their first control point lies in) -> sweep: gather a leaf's control points and
-// those beside it -> value, and shares of numerator and denominator -> add them up, leaf by leaf -> move.
-// Leaves whose origins are two leaves apart on an axis, or more, share no control point: eight colours, and within a colour no two
-// threads write to the same place, in an order that is always the same.
+// Passes: locate (the samples by the leaf that their first control point lies in) -> sweep: gather a leaf's
+// control points and those beside it -> value, and shares of numerator and denominator -> add them up, leaf
+// by leaf -> move. Leaves whose origins are two leaves apart on an axis, or more, share no control point:
+// eight colours, and within a colour no two threads write to the same place, in an order that is always the
+// same.
 #include "polygonize/refit.h"
 
 #include <openvdb/tree/LeafManager.h>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/triangle.h"
 #include "volume/cubic_weights.h"
 #include "volume/padded_leaf.h"
 
@@ -139,7 +141,7 @@ std::vector<SurfaceSample> surfaceSamples(const TriangleMesh& mesh) {
     tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
         const Triangle& t = mesh.triangles[i];
         const Vec3d a(mesh.points[t[0]].data()), b(mesh.points[t[1]].data()), c(mesh.points[t[2]].data());
-        samples[i] = {(a + b + c) / 3, (b - a).cross(c - a).length() / 2};
+        samples[i] = {(a + b + c) / 3, length(areaNormal(mesh, t)) / 2};
     });
     return samples;
 }

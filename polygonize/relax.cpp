@@ -1,5 +1,5 @@
-// relax = stars -> colours -> rounds. The star of a vertex is its triangles, each turned so that the vertex comes
-// first.
+// relax = stars -> colours -> rounds. The star of a vertex is its triangles, each turned so that the vertex
+// comes first.
 #include "polygonize/relax.h"
 
 #include <tbb/parallel_for.h>
@@ -8,8 +8,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <vector>
+
+#include "polygonize/stars.h"
 
 namespace isowave {
 namespace {
@@ -17,29 +18,6 @@ namespace {
 using openvdb::Vec3d;
 
 Vec3d toVec(const Point& p) { return {p[0], p[1], p[2]}; }
-
-// The other two corners, counter-clockwise.
-struct Corner {
-    std::uint32_t next, previous;
-};
-
-struct Stars {
-    std::vector<std::size_t> first;  // of vertex v: corners[first[v] .. first[v + 1])
-    std::vector<Corner> corners;
-};
-
-Stars starsOf(const TriangleMesh& mesh) {
-    Stars stars;
-    stars.first.assign(mesh.points.size() + 1, 0);
-    for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t) ++stars.first[v + 1];
-    std::partial_sum(stars.first.begin(), stars.first.end(), stars.first.begin());
-    stars.corners.resize(stars.first.back());
-    std::vector<std::size_t> at(stars.first.begin(), stars.first.end() - 1);
-    for (const Triangle& t : mesh.triangles)
-        for (int k = 0; k < 3; ++k) stars.corners[at[t[k]]++] = {t[(k + 1) % 3], t[(k + 2) % 3]};
-    return stars;
-}
 
 // Every vertex gets the smallest colour that no neighbour before it has. Vertices by colour, in order.
 std::vector<std::vector<std::uint32_t>> colours(const Stars& stars) {

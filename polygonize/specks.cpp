@@ -22,16 +22,9 @@ namespace {
 // Of the components that are wanted, in their order.
 std::vector<PointBox> boxesOf(const TriangleMesh& mesh, const MeshComponents& components,
                               const std::vector<bool>& wanted) {
-    std::vector<PointBox> boxes(components.count(),
-                                {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}});
-    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        if (components.of[v] == MeshComponents::kNone) continue;
-        PointBox& box = boxes[components.of[v]];
-        for (int a = 0; a < 3; ++a) {
-            box.low[a] = std::min(box.low[a], mesh.points[v][a]);
-            box.high[a] = std::max(box.high[a], mesh.points[v][a]);
-        }
-    }
+    std::vector<PointBox> boxes(components.count());
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (components.of[v] != MeshComponents::kNone) boxes[components.of[v]].add(mesh.points[v]);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i)
         if (wanted[i]) boxes[kept++] = boxes[i];

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/triangle.h"
+
 namespace isowave {
 namespace {
 
@@ -64,9 +66,8 @@ std::vector<std::array<float, 3>> ZeroSet::normalsOf(const TriangleMesh& mesh,
                                                      const Progress& progress) const {
     std::vector<Vec3d> sums(mesh.points.size(), Vec3d(0.0));
     for (const Triangle& t : mesh.triangles) {
-        const Vec3d a = toVec(mesh.points[t[0]]);
-        const Vec3d normal = (toVec(mesh.points[t[1]]) - a).cross(toVec(mesh.points[t[2]]) - a);
-        for (const std::uint32_t v : t) sums[v] += normal;
+        const Vec3 normal = areaNormal(mesh, t);
+        for (const std::uint32_t v : t) sums[v] += Vec3d(normal.x, normal.y, normal.z);
     }
     std::vector<std::array<float, 3>> normals(mesh.points.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, normals.size(), kChunk), [&](const auto& range) {

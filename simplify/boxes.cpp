@@ -1,7 +1,6 @@
 #include "simplify/boxes.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cassert>
@@ -24,16 +23,13 @@ TriangleBoxes::TriangleBoxes(const TriangleMesh& mesh) : tree_(mesh.triangles.si
     });
     order_.resize(count);
     std::iota(order_.begin(), order_.end(), 0u);
-    boxes_.resize(tree_.nodeCount());
-    build(mesh, centres, tree_.root());
+    boxes_.resize(tree_.boxCount());
+    tree_.build(
+        tree_.root(), [&](const Range& range) { divide(centres, range); },
+        [&](const Range& range) { bound(mesh, range); });
 }
 
-void TriangleBoxes::build(const TriangleMesh& mesh, const std::vector<std::array<float, 3>>& centres,
-                          const Range& range) {
-    if (tree_.isLeaf(range)) {
-        boxes_[range.node] = boxOf(mesh, range);
-        return;
-    }
+void TriangleBoxes::divide(const std::vector<std::array<float, 3>>& centres, const Range& range) {
     std::array<float, 3> low, high;
     low.fill(std::numeric_limits<float>::infinity());
     high.fill(-std::numeric_limits<float>::infinity());
@@ -52,17 +48,17 @@ void TriangleBoxes::build(const TriangleMesh& mesh, const std::vector<std::array
                          return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis]
                                                                      : a < b;
                      });
-    const Range left = range.left(), right = range.right();
-    if (range.size() > 4096) {
-        tbb::parallel_invoke([&] { build(mesh, centres, left); }, [&] { build(mesh, centres, right); });
-    } else {
-        build(mesh, centres, left);
-        build(mesh, centres, right);
+}
+
+void TriangleBoxes::bound(const TriangleMesh& mesh, const Range& range) {
+    if (tree_.isLeaf(range)) {
+        boxes_[range.box] = boxOf(mesh, range);
+        return;
     }
-    const Box &a = boxes_[left.node], &b = boxes_[right.node];
+    const Box &a = boxes_[range.left().box], &b = boxes_[range.right().box];
     for (std::size_t k = 0; k < 3; ++k) {
-        boxes_[range.node].low[k] = std::min(a.low[k], b.low[k]);
-        boxes_[range.node].high[k] = std::max(a.high[k], b.high[k]);
+        boxes_[range.box].low[k] = std::min(a.low[k], b.low[k]);
+        boxes_[range.box].high[k] = std::max(a.high[k], b.high[k]);
     }
 }
 

@@ -37,6 +37,13 @@ using Face = Surface::Face_index;
 
 Point3 toPoint3(const Point& p) { return {p[0], p[1], p[2]}; }
 Point toPoint(const Point3& p) { return {p.x(), p.y(), p.z()}; }
+Vec3 toVec3(const Point3& p) { return {p.x(), p.y(), p.z()}; }
+
+// From q to the triangle abc.
+double squaredDistance(const Point3& q, const Point3& a, const Point3& b, const Point3& c) {
+    const Vec3 from = toVec3(q);
+    return squaredLength(from - nearestOnTriangle(from, toVec3(a), toVec3(b), toVec3(c)));
+}
 
 Surface surfaceOf(const TriangleMesh& mesh) {
     Surface surface;
@@ -67,11 +74,11 @@ TriangleMesh meshOf(const Surface& surface) {
     return mesh;
 }
 
-// ------------------------------------------------------------------------------------------------------ thin
+// ---- decimate
 
 // Lets the caller stop CGAL's loop, and tells how far it has come.
-struct ThinningVisitor : Simplification::Edge_collapse_visitor_base<Surface> {
-    explicit ThinningVisitor(const Progress& p) : progress(p) {}
+struct DecimationVisitor : Simplification::Edge_collapse_visitor_base<Surface> {
+    explicit DecimationVisitor(const Progress& p) : progress(p) {}
     void OnCollected(const Profile&, const boost::optional<double>&) { check(); }
     void OnSelected(const Profile&, boost::optional<double>, std::size_t initial, std::size_t current) {
         if (check()) progress("thinning", 1 - static_cast<double>(current) / static_cast<double>(initial));
@@ -85,7 +92,7 @@ struct ThinningVisitor : Simplification::Edge_collapse_visitor_base<Surface> {
     std::size_t calls = 0;
 };
 
-// ------------------------------------------------------------------------------------------------------- fit
+// ---- what a collapse weighs
 
 // The sum of weighted squares of distances from planes, as a function of x: x'Ax - 2b'x + c, about `origin`
 // (Garland and Heckbert 1997).
@@ -113,8 +120,8 @@ struct Quadric {
     }
 };
 
-// Points of the original are taken evenly: so many for each triangle of the start (thin() leaves 4 to 16 for one that
-// is wanted, so those get 8 to 32 points), but enough to see small parts.
+// Points of the original are taken evenly: so many for each triangle of the start (decimate() leaves 4 to 16
+// for one that is wanted, so those get 8 to 32 points), but enough to see small parts.
 constexpr std::size_t kPointsPerTriangle = 2, kFewestPoints = 20'000;
 
 // A corner's triangle in the fan: p, and the two others counter-clockwise.
@@ -136,16 +143,17 @@ double meanEdge(const TriangleMesh& mesh) {
     return mesh.triangles.empty() ? 0 : sum / static_cast<double>(mesh.triangles.size());
 }
 
-// The points' distances to the fan are cheap, those of the fan's samples to the original ten times as dear: they are
-// asked for when a candidate has come to the top of the queue.
-enum class Look { rough, full };
+// What a candidate's cost is. The points' distances to the fan are a lower bound of the error; those of the
+// fan's samples to the original, which it lacks, take ten times as long: they are measured when the candidate
+// has come to the top of the queue.
+enum class Cost { lowerBound, full };
 
 struct Candidate {
     double cost;  // a squared distance
     std::uint64_t stamp;
     Halfedge edge;
     Point3 at;
-    Look look;
+    Cost kind;
     // The queue's top is the cheapest; of equals the one with the smallest number.
     bool operator<(const Candidate& o) const { return cost != o.cost ? cost > o.cost : edge > o.edge; }
 };
@@ -165,17 +173,18 @@ struct Collapse::State {
     // is another one whenever its star is.
     std::vector<std::uint32_t> stamps;
     std::vector<char> stuck;  // by edge: cannot be collapsed and is not in the queue
-    double alike2;            // squared: errors up to it are worth the same
-    double accepted;          // squared: the largest error of a collapse so far, or alike2
+    double floor2;            // squared: errors below it count as equal
+    double accepted;          // squared: the largest error of a collapse so far, or floor2
     std::priority_queue<Candidate> queue;
 
-    State(const TriangleMesh& start, const TriangleMesh& from, const DistanceTarget& target, double alike)
+    State(const TriangleMesh& start, const TriangleMesh& from, const DistanceTarget& target,
+          double errorFloor)
         : surface(surfaceOf(start)),
           reference(from),
           original(target),
           edgeOfOriginal(meanEdge(from)),
-          alike2(alike * alike),
-          accepted(alike2) {}
+          floor2(errorFloor * errorFloor),
+          accepted(floor2) {}
 
     // ---- set up
 
@@ -263,15 +272,13 @@ struct Collapse::State {
         });
     }
 
-    // The square of the largest distance of the star's points to the fan; anything that is at least `enough` when
-    // it is known to be.
+    // The square of the largest distance of the star's points to the fan; anything that is at least `enough`
+    // when it is known to be.
     double pointsError2(const Star& star, const Point3& p, double enough) const {
         double largest = 0;
         for (std::size_t k = 0; k < star.points.size(); ++k) {
             const Point3& point = points[star.points[k]];
-            const auto squaredTo = [&](const FanTriangle& t) {
-                return (point - nearestOnTriangle<Kernel>(point, p, t.b, t.c)).squared_length();
-            };
+            const auto squaredTo = [&](const FanTriangle& t) { return squaredDistance(point, p, t.b, t.c); };
             double nearest = squaredTo(star.fan[star.guess[k]]);
             for (const FanTriangle& t : star.fan) {
                 if (nearest <= largest) break;  // this point will not raise the maximum
@@ -283,19 +290,19 @@ struct Collapse::State {
         return largest;
     }
 
-    // The square of the largest distance of samples of the fan to the original, or `largest`, or anything that is at
-    // least `enough`; infinite where a triangle of the fan faces against the original.
+    // The square of the largest distance of samples of the fan to the original, or `largest`, or anything
+    // that is at least `enough`; infinite where a triangle of the fan faces against the original.
     double samplesError2(const Star& star, const Point3& p, double largest, double enough) const {
-        const auto look = [&](const Point3& at) {
+        const auto measure = [&](const Point3& at) {
             largest = std::max(largest, original.squaredBeyond(toPoint(at), largest));
         };
-        look(p);
+        measure(p);
         for (const FanTriangle& t : star.fan) {
             const int n = partsOf(p, t);
             for (int j = 0; j < n; ++j)  // k = 0 is the side that the next triangle has too
                 for (int k = 1; j + k < n; ++k) {
                     if (largest >= enough) return largest;
-                    look(p + (t.b - p) * j / n + (t.c - p) * k / n);
+                    measure(p + (t.b - p) * j / n + (t.c - p) * k / n);
                 }
             const Point3 centroid = CGAL::centroid(p, t.b, t.c);
             const NearestPoint nearest = original.nearest(toPoint(centroid));
@@ -310,8 +317,8 @@ struct Collapse::State {
         return largest;
     }
 
-    // A triangle's sides are cut into so many parts to sample it: a sample at least every kSampleEvery edges of the
-    // original, as far as kMostParts goes.
+    // A triangle's sides are cut into so many parts to sample it: a sample at least every kSampleEvery edges
+    // of the original, as far as kMostParts goes.
     int partsOf(const Point3& p, const FanTriangle& t) const {
         constexpr double kSampleEvery = 6;
         constexpr int kLeastParts = 2, kMostParts = 6;
@@ -328,27 +335,27 @@ struct Collapse::State {
                                    toPoint3(reference.points[t[2]]) - a);
     }
 
-    // Errors of at most `alike` are worth the same: those are ordered by the quadric q, in [0, alike).
+    // Errors up to the floor count as equal: they are ordered by the quadric error q, mapped to [0, floor2).
     double ranked(double error2, double q) const {
-        if (error2 > alike2 || alike2 == 0) return error2;  // 0/0 is no order
+        if (error2 > floor2 || floor2 == 0) return error2;  // 0/0 is no order
         const double scale =
-            alike2 * edgeOfOriginal * edgeOfOriginal;  // of q: a squared length times an area
-        return alike2 * (q / (q + scale));
+            floor2 * edgeOfOriginal * edgeOfOriginal;  // of q: a squared length times an area
+        return floor2 * (q / (q + scale));
     }
 
     // Where to put p, and what it costs; nothing when the edge must stay.
-    std::optional<Candidate> evaluate(Halfedge h, Look look) const {
+    std::optional<Candidate> evaluate(Halfedge h, Cost kind) const {
         if (!keepsTopology(h)) return {};
         const Star star = starOf(h);
         const Vertex v0 = surface.source(h), v1 = surface.target(h);
         const Point3 &p0 = surface.point(v0), &p1 = surface.point(v1), middle = CGAL::midpoint(p0, p1);
         const Eigen::Vector3d minimum = (quadrics[v0] + quadrics[v1]).minimum(relative(middle));
         const Point3 optimal = origin + Vector3(minimum[0], minimum[1], minimum[2]);
-        Candidate best{std::numeric_limits<double>::infinity(), stampOf(h), h, optimal, look};
+        Candidate best{std::numeric_limits<double>::infinity(), stampOf(h), h, optimal, kind};
         for (const Point3& p : {optimal, middle, p0, p1}) {
             if (!fits(star.fan, p)) continue;
             double error = pointsError2(star, p, best.cost);
-            if (look == Look::full) error = samplesError2(star, p, error, best.cost);
+            if (kind == Cost::full) error = samplesError2(star, p, error, best.cost);
             if (error >= best.cost) continue;
             best.cost = error;
             best.at = p;
@@ -364,8 +371,8 @@ struct Collapse::State {
 
     // ---- the loop
 
-    void push(Edge e, Look look = Look::rough) {
-        const auto candidate = evaluate(surface.halfedge(e), look);
+    void push(Edge e, Cost kind = Cost::lowerBound) {
+        const auto candidate = evaluate(surface.halfedge(e), kind);
         stuck[e] = !candidate;
         if (candidate) queue.push(*candidate);
     }
@@ -377,7 +384,7 @@ struct Collapse::State {
             progress.check();
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
                 const Edge e(static_cast<std::uint32_t>(i));
-                if (!surface.is_removed(e)) all[i] = evaluate(surface.halfedge(e), Look::rough);
+                if (!surface.is_removed(e)) all[i] = evaluate(surface.halfedge(e), Cost::lowerBound);
             }
         });
         stuck.assign(all.size(), 0);
@@ -423,8 +430,7 @@ struct Collapse::State {
             const Fan* nearest = nullptr;
             double least = std::numeric_limits<double>::infinity();
             for (const Fan& t : fan) {
-                const double d =
-                    (points[i] - nearestOnTriangle<Kernel>(points[i], t.a, t.b, t.c)).squared_length();
+                const double d = squaredDistance(points[i], t.a, t.b, t.c);
                 if (nearest && d >= least) continue;
                 least = d;
                 nearest = &t;
@@ -447,18 +453,18 @@ struct Collapse::State {
             if (surface.is_removed(surface.edge(top.edge))) continue;
             if (top.stamp != stampOf(top.edge))
                 push(surface.edge(top.edge));
-            else if (top.look == Look::rough)
-                push(surface.edge(top.edge), Look::full);
+            else if (top.kind == Cost::lowerBound)
+                push(surface.edge(top.edge), Cost::full);
             else
                 collapse(top);
         }
     }
 };
 
-TriangleMesh thin(const TriangleMesh& mesh, std::int64_t triangles, const Progress& progress) {
+TriangleMesh decimate(const TriangleMesh& mesh, std::int64_t triangles, const Progress& progress) {
     Surface surface = surfaceOf(mesh);
     const auto edges = static_cast<std::size_t>(triangles / 2 * 3);  // of a closed surface
-    const ThinningVisitor visitor(progress);
+    const DecimationVisitor visitor(progress);
     Simplification::edge_collapse(surface, Simplification::Count_stop_predicate<Surface>(edges),
                                   CGAL::parameters::get_cost(Simplification::LindstromTurk_cost<Surface>())
                                       .get_placement(Simplification::LindstromTurk_placement<Surface>())
@@ -469,7 +475,7 @@ TriangleMesh thin(const TriangleMesh& mesh, std::int64_t triangles, const Progre
 
 Collapse::Collapse(const TriangleMesh& start, const TriangleMesh& surface, const DistanceTarget& original,
                    const Options& options, const Progress& progress)
-    : state_(std::make_unique<State>(start, surface, original, options.alike)) {
+    : state_(std::make_unique<State>(start, surface, original, options.errorFloor)) {
     State& s = *state_;
     if (!start.points.empty()) s.origin = toPoint3(start.points.front());
     s.spreadPoints(options.reach, progress);

@@ -6,7 +6,8 @@
 //   sum       chunk by chunk, in order: chunks are cut by triangle number, not by thread
 //   tighten   the pieces that may hold a point farther away than any sample are halved on, the least certain
 //             ones first, until the bound is close to the maximum
-#include <CGAL/Simple_cartesian.h>
+#include "simplify/distance.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -15,27 +16,22 @@
 #include <cmath>
 #include <limits>
 
+#include "base/point_box.h"
+#include "base/triangle.h"
 #include "isowave/error.h"
-#include "simplify/measure.h"
 #include "simplify/boxes.h"
 #include "simplify/nearest_on_triangle.h"
 
 namespace isowave {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Point3 = Kernel::Point_3;
-using Vector3 = Kernel::Vector_3;
-
 constexpr std::size_t kChunk = 1024;  // triangles or points handed to a thread at once
 
-Point3 toPoint3(const Point& p) { return {p[0], p[1], p[2]}; }
-
-// ---- pieces -----------------------------------------------------------------------------------------------
+// ---- pieces
 
 // Corners of a triangle or of a part of one, with their distances to the target and its triangle there.
 struct Sample {
-    Point3 at;
+    Vec3 at;
     double distance;
     std::uint32_t nearest;
 };
@@ -46,14 +42,14 @@ using Piece = std::array<Sample, 3>;
 //   obtuse at C:     the farthest point lies on the long side AB, where the bisector of CA or of CB cuts it, at
 //                    |b| / (2 cos A) from A or |a| / (2 cos B) from B
 // Never more than c/sqrt(3), c the longest side: that is its value for the equilateral triangle.
-double coveringRadius(const Point3& p, const Point3& q, const Point3& r) {
-    std::array<double, 3> s2 = {(q - p).squared_length(), (r - q).squared_length(), (p - r).squared_length()};
+double coveringRadius(const Vec3& p, const Vec3& q, const Vec3& r) {
+    std::array<double, 3> s2 = {squaredLength(q - p), squaredLength(r - q), squaredLength(p - r)};
     std::sort(s2.begin(), s2.end());
     const auto [a2, b2, c2] = s2;
     const double worst = std::sqrt(c2 / 3);
     double radius;
     if (a2 + b2 >= c2) {
-        const double twiceArea2 = CGAL::cross_product(q - p, r - p).squared_length();
+        const double twiceArea2 = squaredLength(cross(q - p, r - p));
         radius = std::sqrt(a2 * b2 * c2 / twiceArea2) / 2;
     } else {
         // cos A = (b2 + c2 - a2) / (2 |b||c|)
@@ -62,7 +58,7 @@ double coveringRadius(const Point3& p, const Point3& q, const Point3& r) {
     return radius < worst ? radius : worst;  // also when radius is NaN: two corners in one place
 }
 
-// ---- bounds -----------------------------------------------------------------------------------------------
+// ---- bounds
 
 // A piece with a bound for the distance of all its points.
 struct BoundedPiece {
@@ -83,9 +79,9 @@ double boundByWay(const Piece& piece, const Sample& centroid) {
     return bound;
 }
 
-// The distance to one triangle is convex, so over a piece it is largest at a corner; the distance to the whole
-// target is smaller still. Tried with the triangles that are nearest to the piece's samples (Tang, Lee and Kim
-// 2009). Where one triangle is nearest to all of them, this is the maximum itself.
+// The distance to one triangle is convex, so over a piece it is largest at a corner; the distance to the
+// whole target is smaller still. Tried with the triangles that are nearest to the piece's samples (Tang, Lee
+// and Kim 2009). Where one triangle is nearest to all of them, this is the maximum itself.
 template <class DistanceToTriangle>
 double boundByConvexity(const Piece& piece, const Sample& centroid, const DistanceToTriangle& distanceTo) {
     double bound = std::numeric_limits<double>::infinity();
@@ -98,13 +94,13 @@ double boundByConvexity(const Piece& piece, const Sample& centroid, const Distan
     return bound;
 }
 
-// How close the bound has to come to the maximum: 1 %, or, where the maximum is next to nothing, a millionth of
-// the surface's extent.
+// How close the bound has to come to the maximum: 1 %, or, where the maximum is next to nothing, a millionth
+// of the surface's extent.
 constexpr double kTightness = 0.01, kTightnessOfExtent = 1e-6;
 // Memory: of a chunk's pieces with a larger bound this many are kept, those with the largest.
 constexpr std::size_t kKeptPieces = kChunk;
-// Work: tightening takes at most as many samples as measuring did, but this many are always allowed; and so many
-// where there is a limit to prove.
+// Work: tightening takes at most as many samples as measuring did, but this many are always allowed; and so
+// many where there is a limit to prove.
 constexpr std::int64_t kTighteningSamples = 200'000, kProvingSamples = 4'000'000;
 
 // The pieces of a chunk whose bound is above `enough`.
@@ -161,7 +157,7 @@ void addPiece(const Piece& piece, const Sample& centroid, double weight, Sums& s
     sums.max = std::max({sums.max, a.distance, b.distance, c.distance, centroid.distance});
 }
 
-double coveringRadius(const Piece& piece, const Point3& centroid) {
+double coveringRadius(const Piece& piece, const Vec3& centroid) {
     double radius = 0;
     for (int i = 0; i < 3; ++i)
         radius = std::max(radius, coveringRadius(piece[i].at, piece[(i + 1) % 3].at, centroid));
@@ -169,20 +165,20 @@ double coveringRadius(const Piece& piece, const Point3& centroid) {
 }
 
 int longestSide(const Piece& piece) {
-    const auto length2 = [&](int i) { return (piece[(i + 1) % 3].at - piece[i].at).squared_length(); };
+    const auto length2 = [&](int i) { return squaredLength(piece[(i + 1) % 3].at - piece[i].at); };
     int longest = 0;
     for (int i = 1; i < 3; ++i)
         if (length2(i) > length2(longest)) longest = i;
     return longest;
 }
 
-Point3 centroidOf(const Piece& piece) { return CGAL::centroid(piece[0].at, piece[1].at, piece[2].at); }
+Vec3 centroidOf(const Piece& piece) { return (piece[0].at + piece[1].at + piece[2].at) / 3; }
 
 // Both halves of a piece cut at the middle of its longest side; sampleAt(point) measures there.
 template <class SampleAt>
 std::array<Piece, 2> halves(const Piece& piece, const SampleAt& sampleAt) {
     const int i = longestSide(piece), j = (i + 1) % 3;
-    const Sample cut = sampleAt(CGAL::midpoint(piece[i].at, piece[j].at));
+    const Sample cut = sampleAt((piece[i].at + piece[j].at) / 2);
     std::array<Piece, 2> result{piece, piece};
     result[0][i] = cut;
     result[1][j] = cut;
@@ -195,7 +191,7 @@ std::array<Piece, 2> halves(const Piece& piece, const SampleAt& sampleAt) {
 template <class SampleAt, class Visit>
 void integrate(const Piece& piece, double weight, double spacing, int depth, const SampleAt& sampleAt,
                const Visit& visit, Sums& sums) {
-    const Point3 middle = centroidOf(piece);
+    const Vec3 middle = centroidOf(piece);
     // 100 halvings use up the 53 bits of both coordinates in the plane: no smaller piece can be told apart.
     if (spacing > 0 && depth < 100 && coveringRadius(piece, middle) > spacing) {
         ++sums.samples;
@@ -209,7 +205,7 @@ void integrate(const Piece& piece, double weight, double spacing, int depth, con
     visit(piece, centroid);
 }
 
-// ---- chunks -----------------------------------------------------------------------------------------------
+// ---- chunks
 
 // body(first, last, chunk number), in parallel; the cut does not depend on the number of threads.
 template <class Body>
@@ -230,12 +226,7 @@ std::vector<char> usedPoints(const TriangleMesh& mesh) {
     return used;
 }
 
-double areaOf(const TriangleMesh& mesh, const Triangle& t) {
-    const Point3 a = toPoint3(mesh.points[t[0]]);
-    return std::sqrt(CGAL::cross_product(toPoint3(mesh.points[t[1]]) - a, toPoint3(mesh.points[t[2]]) - a)
-                         .squared_length()) /
-           2;
-}
+double areaOf(const TriangleMesh& mesh, const Triangle& t) { return length(areaNormal(mesh, t)) / 2; }
 
 double areaOf(const TriangleMesh& mesh) {
     double area = 0;
@@ -243,27 +234,25 @@ double areaOf(const TriangleMesh& mesh) {
     return area;
 }
 
-double diagonalOf(const TriangleMesh& mesh, const std::vector<char>& used) {
-    CGAL::Bbox_3 box;
-    for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i]) box += toPoint3(mesh.points[i]).bbox();
-    return std::hypot(box.x_span(), box.y_span(), box.z_span());
+double diagonalOf(const TriangleMesh& mesh) {
+    const PointBox box = boxAround(mesh);
+    return std::hypot(box.extent(0), box.extent(1), box.extent(2));
 }
 
 // Sum of the tetrahedra over all triangles from one point of the mesh, not from the origin, which may be far.
 double volumeOf(const TriangleMesh& mesh) {
-    const Point3 apex = toPoint3(mesh.points[mesh.triangles[0][0]]);
+    const Vec3 apex = toVec3(mesh.points[mesh.triangles[0][0]]);
     double volume6 = 0;
     for (const Triangle& t : mesh.triangles) {
-        const auto corner = [&](int i) { return toPoint3(mesh.points[t[i]]) - apex; };
-        volume6 += CGAL::cross_product(corner(0), corner(1)) * corner(2);
+        const auto corner = [&](int i) { return toVec3(mesh.points[t[i]]) - apex; };
+        volume6 += dot(cross(corner(0), corner(1)), corner(2));
     }
     return volume6 / 6;
 }
 
 }  // namespace
 
-// ---- DistanceTarget ---------------------------------------------------------------------------------------
+// ---- DistanceTarget
 
 struct DistanceTarget::Tree {
     TriangleMesh mesh;
@@ -272,26 +261,25 @@ struct DistanceTarget::Tree {
     explicit Tree(TriangleMesh from)
         : mesh{std::move(from.points), std::move(from.triangles), {}}, boxes(mesh) {}
 
-    Point3 nearestOn(const Point3& p, std::uint32_t triangle) const {
+    Vec3 nearestOn(const Vec3& p, std::uint32_t triangle) const {
         const auto& [a, b, c] = mesh.triangles[triangle];
-        return nearestOnTriangle<Kernel>(p, toPoint3(mesh.points[a]), toPoint3(mesh.points[b]),
-                                         toPoint3(mesh.points[c]));
+        return nearestOnTriangle(p, toVec3(mesh.points[a]), toVec3(mesh.points[b]), toVec3(mesh.points[c]));
     }
-    TriangleBoxes::Nearest nearest(const Point3& p, double enough = 0) const {
+    TriangleBoxes::Nearest nearest(const Vec3& p, double enough = 0) const {
         return boxes.nearest(
-            {p.x(), p.y(), p.z()},
-            [&](std::uint32_t triangle) { return (p - nearestOn(p, triangle)).squared_length(); }, enough);
+            {p.x, p.y, p.z},
+            [&](std::uint32_t triangle) { return squaredLength(p - nearestOn(p, triangle)); }, enough);
     }
-    Sample sampleAt(const Point3& p) const {
+    Sample sampleAt(const Vec3& p) const {
         const TriangleBoxes::Nearest found = nearest(p);
         return {p, std::sqrt(found.squared), found.triangle};
     }
-    double distanceToTriangle(const Point3& p, std::uint32_t triangle) const {
-        return std::sqrt((p - nearestOn(p, triangle)).squared_length());
+    double distanceToTriangle(const Vec3& p, std::uint32_t triangle) const {
+        return std::sqrt(squaredLength(p - nearestOn(p, triangle)));
     }
     BoundedPiece bounded(const Piece& piece, const Sample& centroid) const {
         const double convex = boundByConvexity(
-            piece, centroid, [this](const Point3& p, std::uint32_t t) { return distanceToTriangle(p, t); });
+            piece, centroid, [this](const Vec3& p, std::uint32_t t) { return distanceToTriangle(p, t); });
         return {piece, centroid, std::min(convex, boundByWay(piece, centroid))};
     }
 
@@ -299,9 +287,10 @@ struct DistanceTarget::Tree {
         double found, bound;
         std::int64_t samples;  // that it took
     };
-    // The largest distance over pieces of which `found` is a sample, each bound falling as pieces are halved, until
-    // it is close to the maximum or no more than `wanted`.
-    // invariant: no point of any piece, nor of those dropped for being certain, is farther than maximum.bound.
+    // The largest distance over pieces of which `found` is a sample, each bound falling as pieces are halved,
+    // until it is close to the maximum or no more than `wanted`.
+    // invariant: no point of any piece, nor of those dropped for being certain, is farther than
+    // maximum.bound.
     Maximum tighten(std::vector<BoundedPiece> pieces, double found, double restBound, double wanted,
                     bool limit, std::int64_t mostSamples, const Progress& progress) const;
 };
@@ -319,7 +308,7 @@ DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedP
         for (const BoundedPiece& p : pieces) bound = std::max(bound, p.bound);
         return bound;
     };
-    std::vector<std::array<BoundedPiece, 2>> made;
+    std::vector<std::array<BoundedPiece, 2>> halved;
     for (maximum.bound = boundOf(); maximum.bound > enough() && maximum.samples < mostSamples && !disproved();
          maximum.bound = boundOf()) {
         // This round takes the upper half of the uncertainty; what is certain by now goes.
@@ -328,23 +317,23 @@ DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedP
             std::stable_partition(pieces.begin(), pieces.end(), [&](const auto& p) { return p.bound > now; });
         std::vector<BoundedPiece> next(rest, pieces.end());
         pieces.erase(rest, pieces.end());
-        made.resize(pieces.size());
+        halved.resize(pieces.size());
         tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
             if (i % kChunk == 0) progress.check();
-            const auto measureAt = [this](const Point3& p) { return sampleAt(p); };
+            const auto measureAt = [this](const Vec3& p) { return sampleAt(p); };
             const std::array<Piece, 2> parts = halves(pieces[i].corners, measureAt);
-            for (int k = 0; k < 2; ++k) made[i][k] = bounded(parts[k], measureAt(centroidOf(parts[k])));
+            for (int k = 0; k < 2; ++k) halved[i][k] = bounded(parts[k], measureAt(centroidOf(parts[k])));
         });
         maximum.samples += 3 * static_cast<std::int64_t>(pieces.size());
-        for (const auto& both : made)
+        for (const auto& both : halved)
             for (const BoundedPiece& p : both) {
                 for (const Sample& corner : p.corners)
                     maximum.found = std::max(maximum.found, corner.distance);
                 maximum.found = std::max(maximum.found, p.centroid.distance);
             }
         // A bound of the whole holds for its halves.
-        for (std::size_t i = 0; i < made.size(); ++i)
-            for (BoundedPiece& p : made[i]) {
+        for (std::size_t i = 0; i < halved.size(); ++i)
+            for (BoundedPiece& p : halved[i]) {
                 p.bound = std::min(p.bound, pieces[i].bound);
                 next.push_back(p);
             }
@@ -358,16 +347,16 @@ DistanceTarget::~DistanceTarget() = default;
 DistanceTarget::DistanceTarget(DistanceTarget&&) noexcept = default;
 DistanceTarget& DistanceTarget::operator=(DistanceTarget&&) noexcept = default;
 
-double DistanceTarget::distance(const Point& p) const { return tree_->sampleAt(toPoint3(p)).distance; }
+double DistanceTarget::distance(const Point& p) const { return tree_->sampleAt(toVec3(p)).distance; }
 
 double DistanceTarget::squaredBeyond(const Point& p, double enough) const {
-    return tree_->nearest(toPoint3(p), enough).squared;
+    return tree_->nearest(toVec3(p), enough).squared;
 }
 
 NearestPoint DistanceTarget::nearest(const Point& p) const {
-    const std::uint32_t triangle = tree_->sampleAt(toPoint3(p)).nearest;
-    const Point3 at = tree_->nearestOn(toPoint3(p), triangle);
-    return {{at.x(), at.y(), at.z()}, triangle};
+    const std::uint32_t triangle = tree_->sampleAt(toVec3(p)).nearest;
+    const Vec3 at = tree_->nearestOn(toVec3(p), triangle);
+    return {{at.x, at.y, at.z}, triangle};
 }
 
 OneSidedDistance DistanceTarget::distanceFrom(const TriangleMesh& from, double spacing,
@@ -387,8 +376,9 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
     const double enough = boundEnough.value_or(0);
     if (from.triangles.empty()) return {};
 
-    // A large triangle is cut into millions of samples: a wish to stop is asked for at each, not by the chunk.
-    const auto sampleAt = [this, &progress](const Point3& p) {
+    // A large triangle is cut into millions of samples: a wish to stop is asked for at each, not by the
+    // chunk.
+    const auto sampleAt = [this, &progress](const Vec3& p) {
         progress.check();
         return tree_->sampleAt(p);
     };
@@ -397,12 +387,12 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
     forChunks(from.points.size(), progress, "distances of vertices",
               [&](std::size_t first, std::size_t last, auto) {
                   for (std::size_t i = first; i < last; ++i)
-                      corners[i] = used[i] ? sampleAt(toPoint3(from.points[i])) : Sample{};
+                      corners[i] = used[i] ? sampleAt(toVec3(from.points[i])) : Sample{};
               });
     double largestCorner = 0;
     for (const Sample& corner : corners) largestCorner = std::max(largestCorner, corner.distance);
 
-    const double area = areaOf(from), wanted = std::max(enough, kTightnessOfExtent * diagonalOf(from, used));
+    const double area = areaOf(from), wanted = std::max(enough, kTightnessOfExtent * diagonalOf(from));
     std::vector<Sums> sums((from.triangles.size() + kChunk - 1) / kChunk);
     std::vector<UncertainPieces> uncertain(sums.size(), UncertainPieces(std::max(largestCorner, wanted)));
     forChunks(from.triangles.size(), progress, "distances of triangles",
@@ -451,7 +441,7 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
             total.samples + maximum.samples};
 }
 
-// ---- both sides -------------------------------------------------------------------------------------------
+// ---- both sides
 
 MeshComparison compareMeshes(const TriangleMesh& a, const TriangleMesh& b, double spacing,
                              const Progress& progress, double enough) {

@@ -1,4 +1,5 @@
-// Distances from images, level sets and functions.
+#include "volume/distance_image.h"
+
 #include <openvdb/tools/FastSweeping.h>
 #include <openvdb/tools/Morphology.h>
 #include <openvdb/tree/LeafManager.h>
@@ -11,9 +12,9 @@
 
 #include "isowave/error.h"
 #include "volume/blocks.h"
-#include "volume/distance.h"
-#include "io/image/stream.h"
 #include "volume/linear_transform.h"
+#include "volume/nodes.h"
+#include "volume/nodes_image.h"
 #include "volume/tiles.h"
 
 namespace isowave {
@@ -73,9 +74,9 @@ openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeColl
     return result;
 }
 
-// A lattice point on the iso value is outside. The sweep would take it for inside, and put a surface around one
-// that no inside point is beside; the smallest number below zero it takes as meant, and as distance 0 where an
-// inside point is next to it.
+// A lattice point on the iso value is outside. The sweep would take it for inside, and put a surface around
+// one that no inside point is beside; the smallest number below zero it takes as meant, and as distance 0
+// where an inside point is next to it.
 float strictlySigned(float excess) { return excess == 0 ? -std::numeric_limits<float>::min() : excess; }
 
 // A grid on the band, whose values are still to be set.
@@ -85,8 +86,8 @@ openvdb::FloatGrid::Ptr bandGrid(const openvdb::MaskTree& band) {
     return grid;
 }
 
-// Tiles beside the band: +-1 by sign, or the sweep would see a surface between the band and a tile of the wrong
-// sign.
+// Tiles beside the band: +-1 by sign, or the sweep would see a surface between the band and a tile of the
+// wrong sign.
 void fillBeside(openvdb::FloatTree& band, const NodeCollection& nodes) {
     const openvdb::BoolTree& inside = nodes.grid->constTree();
     const auto signAt = [&inside] {

@@ -1,3 +1,5 @@
+#include "volume/distance_mesh.h"
+
 #include <openvdb/tools/Prune.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -8,7 +10,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "volume/distance.h"
+#include "base/point_box.h"
+#include "base/triangle.h"
 #include "volume/linear_transform.h"
 #include "volume/mesh_nearest.h"
 #include "volume/mesh_winding.h"
@@ -19,32 +22,9 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-struct Bounds {
-    Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-
-    double extent(int axis) const { return high[axis] - low[axis]; }
-};
-
-Bounds boundsOf(const TriangleMesh& mesh) {
-    Bounds bounds;
-    for (const Triangle& triangle : mesh.triangles) {
-        for (const auto corner : triangle) {
-            for (int axis = 0; axis < 3; ++axis) {
-                bounds.low[axis] = std::min(bounds.low[axis], mesh.points[corner][axis]);
-                bounds.high[axis] = std::max(bounds.high[axis], mesh.points[corner][axis]);
-            }
-        }
-    }
-    return bounds;
-}
-
 double areaOf(const TriangleMesh& mesh) {
     double twice = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-        const openvdb::Vec3d a(mesh.points[t[0]].data()), b(mesh.points[t[1]].data()),
-            c(mesh.points[t[2]].data());
-        twice += (b - a).cross(c - a).length();
-    }
+    for (const Triangle& t : mesh.triangles) twice += length(areaNormal(mesh, t));
     return twice / 2;
 }
 
@@ -251,14 +231,14 @@ openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb
 
 double voxelForCount(const TriangleMesh& mesh, double voxels) {
     assert(voxels > 0 && !mesh.triangles.empty());
-    const Bounds bounds = boundsOf(mesh);
+    const PointBox bounds = boxAround(mesh);
     return std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)}) / voxels;
 }
 
 openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double voxel) {
     assert(voxel > 0 && !mesh.triangles.empty());
     const double offset = (3.0 - std::sqrt(5.0)) / 2.0;
-    const Bounds bounds = boundsOf(mesh);
+    const PointBox bounds = boxAround(mesh);
     auto transform = linearTransform(voxel, "mesh");
     transform->postTranslate(openvdb::Vec3d(bounds.low.data()) - openvdb::Vec3d(offset * voxel));
     return transform;
@@ -266,7 +246,7 @@ openvdb::math::Transform::Ptr transformForMesh(const TriangleMesh& mesh, double 
 
 double estimateBandVoxels(const TriangleMesh& mesh, double voxel, double halfWidth) {
     assert(voxel > 0 && halfWidth > 0 && !mesh.triangles.empty());
-    const Bounds bounds = boundsOf(mesh);
+    const PointBox bounds = boxAround(mesh);
     double box = 1.0;
     for (int axis = 0; axis < 3; ++axis) box *= bounds.extent(axis) / voxel + 2 * halfWidth;
     return std::min(box, areaOf(mesh) / (voxel * voxel) * 2 * halfWidth);

@@ -37,7 +37,7 @@ using MaskLeaf = Mask::LeafNodeType;
 template <class Tree>
 using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
 
-// ---- known ----------------------------------------------------------------------------------------------
+// ---- known
 
 // The lattice points that are corners of a kept node: voxel i is one when a node of i - {0,1}^3 is kept.
 Mask cornersOf(const Mask& nodes) {
@@ -81,7 +81,7 @@ Mask knownAround(const Mask& nodes) {
     return known;
 }
 
-// ---- origin ---------------------------------------------------------------------------------------------
+// ---- origin
 
 // Halving a domain that lies at -1 and above ends at one node, control points -1 .. 2. One that straddles the
 // origin ends at -2 .. 2, two nodes, for ever. So the lattice is shifted, by whole leaves, until nothing lies
@@ -113,7 +113,7 @@ openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& t
     return result;
 }
 
-// ---- shape ----------------------------------------------------------------------------------------------
+// ---- shape
 
 // Signs of distances, and of a grid that holds signs.
 bool isInside(float distance) { return distance < 0; }
@@ -121,8 +121,8 @@ bool isInside(bool inside) { return inside; }
 LeafWords signsOf(const FloatLeaf& leaf) { return negativeWordsOf(leaf.buffer().data()); }
 LeafWords signsOf(const BoolLeaf& leaf) { return insideWordsOf(leaf); }
 
-// The signs of a source, a tree in its own coordinates (lattice point i of the source is i + shift of the field; shift
-// is whole leaves), for one thread: of one lattice point of the field, and of a leaf.
+// The signs of a source, a tree in its own coordinates (lattice point i of the source is i + shift of the
+// field; shift is whole leaves), for one thread: of one lattice point of the field, and of a leaf.
 template <class Tree>
 class Signs {
   public:
@@ -140,8 +140,8 @@ class Signs {
     openvdb::Coord shift_;
 };
 
-// makeInside() returns the signs of the source for one thread; source: a tree, in its own coordinates, whose root
-// regions cover every inside region.
+// makeInside() returns the signs of the source for one thread; source: a tree, in its own coordinates, whose
+// root regions cover every inside region.
 template <class Source, class MakeInside>
 Shape::Ptr makeShape(const Mask& known, const Source& source, const openvdb::Coord& shift,
                      const MakeInside& makeInside) {
@@ -177,7 +177,7 @@ BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transfor
     return field;
 }
 
-// ---- smooth ---------------------------------------------------------------------------------------------
+// ---- smooth
 
 // One pass of the discrete Laplacian filter on I: c <- (c + mean of the six neighbours)/2, all at once.
 void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const openvdb::FloatTree& tree) {
@@ -196,11 +196,11 @@ void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const
     leaves.swapLeafBuffer(1);
 }
 
-// ---- repair ---------------------------------------------------------------------------------------------
+// ---- repair
 
 // While a lattice point of I has s F < floor: its control point c <- c + target s - F. A change by delta
-// moves F there by (2/3)^3 delta. A pass looks at the leaves whose neighbourhood the last one changed, and changes
-// them all at once: few after the first, so that what it costs is the first.
+// moves F there by (2/3)^3 delta. A pass looks at the leaves whose neighbourhood the last one changed, and
+// changes them all at once: few after the first, so that what it costs is the first.
 class Repair {
   public:
     // floor, target: fractions of K.
@@ -348,8 +348,8 @@ constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
 // will do: floor and target in voxels.
 constexpr double kDistanceFloor = 1e-4, kDistanceTarget = 2e-4;
 
-// result: what is known so far; report: where all of it goes, nullptr if nobody asks for it. Counting takes a quarter of
-// a fit.
+// result: what is known so far; report: where all of it goes, nullptr if nobody asks for it. Counting takes a
+// quarter of a fit.
 void finish(BSplineField& field, double floor, double target, int mostPasses, FitReport result,
             FitReport* report, const Progress& progress) {
     progress("fitting", 0.5);
@@ -361,7 +361,7 @@ void finish(BSplineField& field, double floor, double target, int mostPasses, Fi
     progress("fitting", 1);
 }
 
-// ---- distances ------------------------------------------------------------------------------------------
+// ---- distances
 
 // Nodes with a corner nearer than `band`, and nodes whose corner signs differ.
 Mask nodesNear(const openvdb::FloatTree& distance, float band) {

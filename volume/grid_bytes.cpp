@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kBlockLeaves = 256, kBlocksAhead = 16;
 
-// Leaves [begin, end) as bytes. `like`: the stream that they are for, which carries what OpenVDB wants to know
-// (compression, background).
+// Leaves [begin, end) as bytes. `like`: the stream that they are for, which carries what OpenVDB wants to
+// know (compression, background).
 template <class Leaves>
 std::string bytesOf(const Leaves& leaves, std::size_t begin, std::size_t end, const std::ostream& like,
                     bool toHalf) {

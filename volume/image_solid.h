@@ -1,17 +1,36 @@
-// Inside volume/: which voxels of an image are inside.
+// Which voxels of an image are inside the solid.
 #pragma once
 
 #include <cmath>
 #include <limits>
-#include <span>
+#include <optional>
 #include <type_traits>
+#include <utility>
 
-#include "volume/distance.h"
+#include "isowave/image.h"
+#include "volume/vdb.h"
 
 namespace isowave {
 
+// With an open border the border's voxels continue this many voxels outwards before the cap; a mesh is then
+// cut off at the border itself (clipToBox() in polygonize/clip.h).
+inline constexpr int kOpenBorder = 16;
+
+struct ImageSolid {
+    double iso = 0.5;     // inside where value > iso
+    bool invert = false;  // inside where value < iso
+    // Given: inside where value == label (with invert: where it is not) and iso means nothing. For distances,
+    // voxels count as 1 where they have the label, as 0 elsewhere, and the surface is at 0.5.
+    std::optional<double> label = {};
+    bool openBorder = false;  // true: no cap; the border's values continue outwards instead of "outside"
+};
+
 // Lattice points of an image as a box; with an open border, the border's voxels continue outwards.
-openvdb::CoordBBox boxOf(const Image& image, bool openBorder);  // image_nodes.cpp
+inline openvdb::CoordBBox boxOf(const Image& image, bool openBorder) {
+    openvdb::CoordBBox box(0, 0, 0, int(image.size[0]) - 1, int(image.size[1]) - 1, int(image.size[2]) - 1);
+    if (openBorder) box.expand(kOpenBorder);
+    return box;
+}
 
 // Inside is where low <= value <= high, or, flipped, where it is not; values as float32.
 struct InsideTest {

@@ -1,7 +1,7 @@
-// One pass over an image: range, percentiles, distinct values.
-#include <algorithm>
+#include "volume/image_statistics.h"
 
-#include "io/image/stream.h"
+#include <algorithm>
+#include <cmath>
 
 namespace isowave {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 // 4 M voxels give every percentile to a small fraction of a percent.
 constexpr std::int64_t kSampleLog2 = 22;
 
-// Voxels that are looked at together: most lie where nothing changes, and then one look will do.
+// Voxels that are compared at once: most chunks hold one value, the last one seen, and need no more.
 constexpr std::size_t kChunk = 64;
 
 // Up to kMostDistinct + 1 values, ascending.
@@ -39,7 +39,7 @@ struct Part {
 };
 
 template <class T>
-void look(std::span<const T> values, std::optional<float> wanted, Part& part) {
+void scan(std::span<const T> values, std::optional<float> wanted, Part& part) {
     T last = values.front();
     part.distinct.add(static_cast<float>(last));
     T low = last, high = last;
@@ -100,7 +100,7 @@ ImageStatistics statisticsOf(ImageStream& stream, std::optional<float> wanted, c
         std::visit(
             [&](auto values) {
                 // Of voxels known to be 0, one says all.
-                look(slab.zero ? values.subspan(0, 1) : values, wanted, part);
+                scan(slab.zero ? values.subspan(0, 1) : values, wanted, part);
                 sample(values, slab.z0 * slice, stride, part.sample);
             },
             slab.voxels);

@@ -1,4 +1,5 @@
-// A leaf's 512 bits as eight words: word x, bit 8y + z. What is known and what is inside, 64 lattice points at a time.
+// A leaf's 512 bits as eight words: word x, bit 8y + z. What is known and what is inside, 64 lattice points
+// at a time.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +49,8 @@ LeafWords negativeWordsOf(const Value* values) {
     return words;
 }
 
-// 512 values, -K where inside and +K elsewhere. By the sign bits of four values at a time: which bits are set no branch
-// predictor can know.
+// 512 values, -K where inside and +K elsewhere. By the sign bits of four values at a time: which bits are set
+// no branch predictor can know.
 inline void fillBySign(const LeafWords& inside, float K, float* values) {
     static constexpr auto kSigns = [] {
         std::array<std::array<std::uint32_t, 4>, 16> signs{};

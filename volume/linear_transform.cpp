@@ -24,10 +24,21 @@ void refuseTinyVoxels(const openvdb::math::Mat3d& axes, const std::string& objec
 
 }  // namespace
 
+openvdb::math::Mat4d matrixOf(const AffineTransform& indexToWorld) {
+    const auto& [x, y, z] = indexToWorld.axis;
+    const auto& o = indexToWorld.origin;
+    return {x[0], x[1], x[2], 0., y[0], y[1], y[2], 0., z[0], z[1], z[2], 0., o[0], o[1], o[2], 1.};
+}
+
 openvdb::math::Transform::Ptr linearTransform(const openvdb::math::Mat4d& indexToWorld,
                                               const std::string& object) {
     refuseTinyVoxels(indexToWorld.getMat3(), object);
     return openvdb::math::Transform::createLinearTransform(indexToWorld);
+}
+
+openvdb::math::Transform::Ptr linearTransform(const AffineTransform& indexToWorld,
+                                              const std::string& object) {
+    return linearTransform(matrixOf(indexToWorld), object);
 }
 
 openvdb::math::Transform::Ptr linearTransform(double voxel, const std::string& object) {

@@ -1,7 +1,6 @@
 #include "volume/mesh_nearest.h"
 
 #include <openvdb/math/Proximity.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cassert>
@@ -28,30 +27,33 @@ TriangleHierarchy::TriangleHierarchy(const std::vector<Vec3d>& points, const std
     assert(!triangles.empty());
     corners_.reserve(triangles.size());
     for (const Triangle& t : triangles) corners_.push_back({points[t[0]], points[t[1]], points[t[2]]});
-    boxes_.resize(tree_.nodeCount());
-    build(tree_.root());
+    boxes_.resize(tree_.boxCount());
+    tree_.build(
+        tree_.root(), [this](const Range& range) { divide(range); },
+        [this](const Range& range) { bound(range); });
 }
 
-void TriangleHierarchy::build(const Range& range) {
-    openvdb::BBoxd box, centres;  // centres: three times the triangles' centres
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-        for (const Vec3d& corner : corners_[i]) box.expand(corner);
-        centres.expand(corners_[i][0] + corners_[i][1] + corners_[i][2]);
-    }
-    boxes_[range.node] = box;
-    if (tree_.isLeaf(range)) return;
+void TriangleHierarchy::divide(const Range& range) {
+    const auto tripledCentre = [](const Corners& c) { return c[0] + c[1] + c[2]; };
+    openvdb::BBoxd centres;
+    for (std::size_t i = range.begin; i < range.end; ++i) centres.expand(tripledCentre(corners_[i]));
     const auto axis = static_cast<int>(centres.maxExtent());
     const auto first = corners_.begin();
     std::nth_element(first + std::ptrdiff_t(range.begin), first + std::ptrdiff_t(range.middle()),
                      first + std::ptrdiff_t(range.end), [axis](const Corners& a, const Corners& b) {
                          return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
                      });
-    if (range.size() > 4096) {
-        tbb::parallel_invoke([&] { build(range.left()); }, [&] { build(range.right()); });
-    } else {
-        build(range.left());
-        build(range.right());
+}
+
+void TriangleHierarchy::bound(const Range& range) {
+    openvdb::BBoxd& box = boxes_[range.box];
+    if (!tree_.isLeaf(range)) {
+        box = boxes_[range.left().box];
+        box.expand(boxes_[range.right().box]);
+        return;
     }
+    for (std::size_t i = range.begin; i < range.end; ++i)
+        for (const Vec3d& corner : corners_[i]) box.expand(corner);
 }
 
 TriangleHierarchy::Nearest TriangleHierarchy::distanceTo(std::int64_t triangle, const Vec3d& point) const {
@@ -63,7 +65,7 @@ TriangleHierarchy::Nearest TriangleHierarchy::distanceTo(std::int64_t triangle, 
 
 TriangleHierarchy::Nearest TriangleHierarchy::nearest(const Vec3d& point, Nearest best) const {
     tree_.nearestFirst(
-        best.squared, [&](std::size_t node) { return squaredDistanceTo(boxes_[node], point); },
+        best.squared, [&](std::size_t box) { return squaredDistanceTo(boxes_[box], point); },
         [&](const Range& leaf) {
             for (std::size_t i = leaf.begin; i < leaf.end; ++i) {
                 const Nearest found = distanceTo(std::int64_t(i), point);

@@ -12,7 +12,10 @@
 namespace isowave {
 
 // Boxes around halves of the triangles, split at the median of their centres along the longest axis that
-// these span, until at most kInLeaf are left.
+// these span, until at most kInLeaf are left. Corners are copied leaf by leaf, boxes are double: 120 to
+// 168 bytes a triangle for the fastest of queries, of which a distance field takes millions. TriangleBoxes
+// (simplify/boxes.h) takes 16 to 28 bytes for meshes of tens of millions of triangles, which are asked less
+// often.
 class TriangleHierarchy {
   public:
     // REQUIRES: at least one triangle.
@@ -35,7 +38,8 @@ class TriangleHierarchy {
 
     using Corners = std::array<openvdb::Vec3d, 3>;
     using Range = HalvingTree::Range;  // of triangles
-    void build(const Range& range);
+    void divide(const Range& range);
+    void bound(const Range& range);
 
     std::vector<Corners> corners_;
     std::vector<openvdb::BBoxd> boxes_;

@@ -43,7 +43,7 @@ void sortUnlessStopped(std::vector<T>& values, const Progress& progress, const L
     });
 }
 
-// ---- merge, drop ----
+// ---- merge, drop
 
 // Equal points become one, unused ones go; the order of first use stays.
 void mergePoints(TriangleMesh& mesh, MeshRepairReport& report, const Progress& progress) {
@@ -145,7 +145,7 @@ void dropDuplicates(TriangleMesh& mesh, MeshRepairReport& report, const Progress
     mesh.triangles.resize(kept);
 }
 
-// ---- edges ----
+// ---- edges
 
 // One triangle's use of an edge, from `low` to `high` or back.
 struct EdgeUse {
@@ -196,7 +196,7 @@ bool isBalanced(const std::vector<EdgeUse>& uses) {
     return balanced;
 }
 
-// ---- orient ----
+// ---- orient
 
 // Neighbours across edges with two triangles, as a graph in compressed rows.
 struct Neighbours {
@@ -262,7 +262,7 @@ bool orient(TriangleMesh& mesh, const std::vector<EdgeUse>& uses, MeshRepairRepo
     return clear || components == 1;
 }
 
-// ---- fill ----
+// ---- fill
 
 struct BoundaryEdge {
     Index from, to;  // the direction that its triangles lack

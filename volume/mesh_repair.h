@@ -1,22 +1,14 @@
-// Meshes from files, made closed or refused with a line that says why.
+// A triangle soup made a closed mesh, or refused with a line that says why.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "isowave/progress.h"
 #include "isowave/mesh.h"
+#include "isowave/progress.h"
 
 namespace isowave {
-
-// What a mesh file says besides its polygons.
-struct MeshFileInfo {
-    std::string format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF"
-    std::string space;   // the word after SPACE= in a comment, as 3D Slicer writes it: LPS, RAS; or empty
-    std::int64_t polygons = 0;  // as listed, before they are cut into triangles
-};
 
 // What was found in, and done to, a triangle soup.
 struct MeshRepairReport {
@@ -36,17 +28,6 @@ struct MeshRepairReport {
     std::vector<std::string> notes;  // the same in words, one line each, for the user
 };
 
-// Steps of the coordinates' number format that a mesh must be across to be read.
-inline constexpr int kFewestSteps = 1024;
-
-// Any polygon file that CGAL reads: STL (binary, ascii), OBJ, PLY, OFF. Polygons are triangulated as fans.
-// Throws InputError: missing, empty, truncated, malformed (with line or byte), no triangles, a coordinate
-// that is not finite (which point), coordinates beyond 1e15 or so far from the origin that fewer than
-// kFewestSteps representable steps are left across the part. No repair beyond that: points as listed (STL corners merged
-// by exact position). info: optional second result.
-TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info = nullptr,
-                      const Progress& progress = {});
-
 struct RepairOptions {
     // The longest loop of boundary edges to close, as a fraction of the bounding box's diagonal: 0.5 closes a
     // round hole of a sixth of the diagonal across (the holes under a scanned figure), not a missing side. 0
@@ -60,8 +41,5 @@ struct RepairOptions {
 // Time n log n in what was read, whatever its boundary. Throws Cancelled when progress says so.
 TriangleMesh repairMesh(TriangleMesh mesh, const std::string& name, MeshRepairReport* report = nullptr,
                         const RepairOptions& options = {}, const Progress& progress = {});
-
-// Whether a path has a mesh file's extension: .stl .obj .ply .off, in any case.
-bool isMeshPath(const std::filesystem::path& path);
 
 }  // namespace isowave

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "isowave/progress.h"
 #include "isowave/mesh.h"
+#include "isowave/progress.h"
 #include "volume/vdb.h"
 
 namespace isowave {
@@ -21,7 +21,8 @@ namespace isowave {
 // fraction, and the first lattice point at or beyond it is all that is kept.
 //
 // (1) inside(p) depends on the rounded mesh and p alone: not on threads, order of triangles or neighbours.
-// (2) A lattice point on the surface is inside or outside; boxes with corners on lattice points hold their low
+// (2) A lattice point on the surface is inside or outside; boxes with corners on lattice points hold their
+// low
 //     faces and not their high ones.
 class LatticeLines {
   public:

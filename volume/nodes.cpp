@@ -1,11 +1,11 @@
-// Node-Collections from anything that knows the sign of every lattice point of a box; outside beyond it.
+#include "volume/nodes.h"
+
 #include <tbb/parallel_for.h>
 
 #include <memory>
 
 #include "isowave/error.h"
 #include "volume/blocks.h"
-#include "volume/distance.h"
 
 namespace isowave {
 namespace {

@@ -6,6 +6,8 @@
 //             outside (told of 8 blocks at once), or a leaf
 //   forget    planes that no later layer needs
 // Bytes beside the image: 0, or with an open border the border's voxels continued.
+#include "volume/nodes_image.h"
+
 #include <tbb/parallel_for.h>
 
 #include <bit>
@@ -14,9 +16,6 @@
 #include <memory>
 #include <mutex>
 
-#include "isowave/error.h"
-#include "volume/image_solid.h"
-#include "io/image/stream.h"
 #include "volume/linear_transform.h"
 
 namespace isowave {
@@ -30,8 +29,8 @@ static_assert(BoolLeaf::LOG2DIM == 3, "a leaf's masks are eight words, one a pos
 // Bit i: flags[i], which is 0 or 1.
 std::uint8_t packed(const std::uint8_t* flags) {
     if constexpr (std::endian::native == std::endian::little) {
-        // Flag i lies at bit 8i of the word and goes to bit 56 + i: times 2^(56 - 7i). No two of the 64 products
-        // 2^(8i + 56 - 7j) are the same, so nothing carries.
+        // Flag i lies at bit 8i of the word and goes to bit 56 + i: times 2^(56 - 7i). No two of the 64
+        // products 2^(8i + 56 - 7j) are the same, so nothing carries.
         Word word;
         std::memcpy(&word, flags, sizeof word);
         return static_cast<std::uint8_t>(word * 0x0102040810204080u >> 56);
@@ -137,8 +136,8 @@ class Packer {
 
 using Layer = std::array<const Plane*, 9>;  // z = origin .. origin + 8
 
-// The leaf at byte k of the 9 rows from r on. S(x, y, z): the sign at its lattice point, 0 <= x, y, z <= 8. A node is
-// stabbed unless its 8 corners agree.
+// The leaf at byte k of the 9 rows from r on. S(x, y, z): the sign at its lattice point, 0 <= x, y, z <= 8. A
+// node is stabbed unless its 8 corners agree.
 std::unique_ptr<BoolLeaf> makeLeaf(const Layer& layer, std::size_t r, std::size_t k, const Coord& origin) {
     std::array<std::array<unsigned, 9>, 9> alongZ{};  // [x][y]: bit z
     for (unsigned z = 0; z < 9; ++z)
@@ -265,12 +264,6 @@ class Layers {
 };
 
 }  // namespace
-
-openvdb::CoordBBox boxOf(const Image& image, bool openBorder) {
-    openvdb::CoordBBox box(0, 0, 0, int(image.size[0]) - 1, int(image.size[1]) - 1, int(image.size[2]) - 1);
-    if (openBorder) box.expand(kOpenBorder);
-    return box;
-}
 
 NodeCollection nodesFromImage(ImageStream& stream, const ImageSolid& solid, const Progress& progress) {
     const Image& image = stream.header();

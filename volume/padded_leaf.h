@@ -21,9 +21,9 @@ struct PaddedLeaf {
     }
     Value at(int x, int y, int z) const { return values[index(x, y, z)]; }
 
-    // Copies from the leaves and tiles around `origin` (of a leaf). open(leaf) returns what reads that leaf's rows: called
-    // with (offset, count, out) it copies the values at offset .. offset + count - 1. The accessor gives the value of a
-    // place without leaf, which is the same all over it.
+    // Copies from the leaves and tiles around `origin` (of a leaf). open(leaf) returns what reads that leaf's
+    // rows: called with (offset, count, out) it copies the values at offset .. offset + count - 1. The
+    // accessor gives the value of a place without leaf, which is the same all over it.
     template <class Accessor, class Open>
     void gatherRows(const Accessor& accessor, const openvdb::Coord& origin, const Open& open) {
         using Leaf = typename Accessor::TreeType::LeafNodeType;

@@ -53,7 +53,8 @@ void fillRootTiles(Tree& tree, const From& from, const ToThis& toThis, const Mak
     }
 }
 
-// Nodes of a shape beside one of another tree: one, or two along an axis that the other tree has halved.
+// Internal nodes of a shape's tree beside one of another tree: one, or two along an axis that the other tree
+// has halved.
 template <class ShapeNode>
 class ShapeBeside {
   public:
@@ -91,9 +92,10 @@ class ShapeBeside {
     std::array<bool, 2> tiles_{};
 };
 
-// Tiles of `tree`, the root's own among them, that a shape has inside, set to `inside`; the others stay what they are, the
-// background. A lattice point of `tree` is the shape's whose coordinate along `halved` (0, 1, 2; -1: none) is twice as large.
-// Node by node: a look into a table for each tile, where fillTiles() descends from the root.
+// Tiles of `tree`, the root's own among them, that a shape has inside, set to `inside`; the others stay what
+// they are, the background. A lattice point of `tree` is the shape's whose coordinate along `halved` (0, 1,
+// 2; -1: none) is twice as large. Internal node by internal node: one table access a tile, where fillTiles()
+// descends from the root.
 // REQUIRES: as fillTiles().
 template <class Tree>
 void fillInsideTiles(Tree& tree, const openvdb::BoolTree& shape, int halved,

@@ -6,13 +6,13 @@
 //   at 21  36 chars UUID as text, random in OpenVDB's own files
 //   at 57  the file's metadata, the number of grids, the grids
 //
-// Files written here carry three marks of their own. The metadatum isowave:parts says of the bytes before the first grid
-// and of each grid, descriptor included, where they end and what their hash is (of the former with those of the UUID and
-// of this text taken as zeros): what is read is found whole before it is parsed, without reading the rest. The UUID is of
-// version 8 ("vendor specific", RFC 9562) and its other 122 bits are a hash of that text. The metadatum
-// isowave:file_bytes is the length of the file. The hashes find damage before OpenVDB parses anything, which matters:
-// io::bloscFromStream() reads as many bytes as a damaged file tells it to into a buffer of another size. The length tells
-// truncation from other damage.
+// Files written here carry three marks of their own. The metadatum isowave:parts says of the bytes before the
+// first grid and of each grid, descriptor included, where they end and what their hash is (of the former with
+// those of the UUID and of this text taken as zeros): what is read is found whole before it is parsed,
+// without reading the rest. The UUID is of version 8 ("vendor specific", RFC 9562) and its other 122 bits are
+// a hash of that text. The metadatum isowave:file_bytes is the length of the file. The hashes find damage
+// before OpenVDB parses anything, which matters: io::bloscFromStream() reads as many bytes as a damaged file
+// tells it to into a buffer of another size. The length tells truncation from other damage.
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
@@ -31,8 +31,8 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
-#include "isowave/error.h"
 #include "base/file_bytes.h"
+#include "isowave/error.h"
 #include "volume/content_hash.h"
 #include "volume/grid_bytes.h"
 
@@ -46,8 +46,7 @@ constexpr std::streamoff kUuidAt = 21, kUuidLength = 36, kHeaderBytes = kUuidAt 
 constexpr const char* kFileBytes = "isowave:file_bytes";
 constexpr const char* kParts = "isowave:parts";
 
-// -------------------------------------------------------------------------------------------------------
-// reading
+// ---- reading
 
 // One line whatever a library's message holds.
 std::string oneLine(std::string text) {
@@ -64,14 +63,15 @@ struct Preamble {
     std::optional<std::int64_t> writtenLength;  // isowave:file_bytes
     std::int64_t partsAt = 0, partsLength = 0;  // where the text of isowave:parts lies; 0 without it
 
-    // A file that another program wrote again from what it read here keeps our metadata under a UUID of its own:
-    // it is that program's file, unless its length is still the one that we wrote.
+    // A file that another program wrote again from what it read here keeps our metadata under a UUID of its
+    // own: it is that program's file, unless its length is still the one that we wrote.
     bool ours() const {
         return (uuid.size() == kUuidLength && uuid[14] == '8') || (writtenLength && *writtenLength == length);
     }
 };
 
-// Where the value of metadatum `name` of type `type` begins in `text`, a MetaMap as written; npos if it is not there.
+// Where the value of metadatum `name` of type `type` begins in `text`, a MetaMap as written; npos if it is
+// not there.
 // An entry is: uint32 length, name, uint32 length, type name, uint32 length of the value, value.
 std::size_t valueAt(const std::string& text, const char* name, const char* type) {
     const std::size_t at = text.find(name);
@@ -148,8 +148,8 @@ std::string hashOf(const FileBytes& file, const Part& part, const std::vector<Pa
     return hash.hex();
 }
 
-// The parts of a file: what lies before the first grid, then each grid. As text, isowave:parts, 16 hexadecimal digits of
-// where a part ends and 32 of its hash, part by part.
+// The parts of a file: what lies before the first grid, then each grid. As text, isowave:parts, 16
+// hexadecimal digits of where a part ends and 32 of its hash, part by part.
 class PartTable {
   public:
     static constexpr std::size_t kEndLength = 16, kEntryLength = kEndLength + ContentHash::kHexLength;
@@ -274,8 +274,7 @@ auto guarded(const std::string& name, std::int64_t length, const Work& work) {
 
 }  // namespace
 
-// -------------------------------------------------------------------------------------------------------
-// reading in parts
+// ---- reading in parts
 
 namespace {
 
@@ -310,8 +309,8 @@ class GridReader : public openvdb::io::Archive {
     }
 };
 
-// The name of the grid whose descriptor begins at `part`. Its bytes were not checked: a length that is out of the
-// question reads as no name.
+// The name of the grid whose descriptor begins at `part`. Its bytes were not checked: a length that is out of
+// the question reads as no name.
 std::string gridNameAt(const FileBytes& file, const Part& part) {
     std::uint32_t length = 0;
     readAll(file, part.begin, reinterpret_cast<char*>(&length), sizeof length);
@@ -430,8 +429,7 @@ std::vector<openvdb::GridBase::Ptr> VdbParts::read(const std::vector<std::string
     return result;
 }
 
-// -------------------------------------------------------------------------------------------------------
-// writing
+// ---- writing
 
 namespace {
 
@@ -440,8 +438,9 @@ namespace {
 class StreamArchive : public openvdb::io::Archive {
   public:
     StreamArchive() {
-        // Neither Blosc nor zip: on coefficients they gain nothing. The pyramid of 19.6 million control points is 137.3 MB
-        // with Blosc (8 bytes more a leaf), 135.4 with zip, 136.4 with neither, and OpenVDB writes it in 1.1, 7.9 and 0.6 s.
+        // Neither Blosc nor zip: on coefficients they gain nothing. The pyramid of 19.6 million control
+        // points is 137.3 MB with Blosc (8 bytes more a leaf), 135.4 with zip, 136.4 with neither, and
+        // OpenVDB writes it in 1.1, 7.9 and 0.6 s.
         setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);
         setInstancingEnabled(false);  // each part can be read alone
     }
@@ -474,7 +473,8 @@ class WrittenParts : public openvdb::io::Archive {
     }
 };
 
-// pass 1: the content; pass 2: its length; pass 3: the hashes of its parts and their hash in place of the random UUID.
+// pass 1: the content; pass 2: its length; pass 3: the hashes of its parts and their hash in place of the
+// random UUID.
 void writeContent(AtomicFile& file, const openvdb::GridCPtrVec& grids, openvdb::MetaMap metadata) {
     std::ostream& stream = file.stream();
     metadata.insertMeta(kFileBytes, openvdb::Int64Metadata(0));
@@ -529,8 +529,7 @@ void writeField(const std::filesystem::path& path, const BSplineField& field) {
     writeVdb(path, {grid});
 }
 
-// ----------------------------------------------------------------------------------------------------- level
-// sets
+// ---- level sets
 
 namespace {
 

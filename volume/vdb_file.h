@@ -2,7 +2,8 @@
 // nothing.
 //
 // Three promises beyond openvdb::io::File:
-// (1) The bytes are a function of the grids and the metadata alone. OpenVDB puts a random UUID into each header;
+// (1) The bytes are a function of the grids and the metadata alone. OpenVDB puts a random UUID into each
+// header;
 //     here it is a hash of the rest of the file.
 // (2) Every truncation is found, and every change of a byte in a file that writeVdb() wrote.
 // (3) The values come back to the bit, inactive ones too.
@@ -27,8 +28,9 @@ struct VdbContent {
 // Reads everything. Throws InputError: missing, empty, a folder, not a .vdb, truncated, damaged.
 VdbContent readVdb(const std::filesystem::path& path);
 
-// Grids of a file one by one: only what is asked for is read. A file that writeVdb() wrote has a hash of each of its
-// parts, so that promise (2) holds for what is read and nobody looks at the rest; any other file is read whole.
+// The grids of a file, read one by one as they are asked for. A file that writeVdb() wrote has a hash of each
+// of its parts, so that promise (2) holds for what is read and nobody looks at the rest; any other file is
+// read whole.
 class VdbParts {
   public:
     // Reads the metadata and where each grid lies. Throws as readVdb() does.
@@ -38,8 +40,8 @@ class VdbParts {
     VdbParts& operator=(const VdbParts&) = delete;
 
     const openvdb::MetaMap& metadata() const;
-    // The grids of these names, by several threads; null where there is none of that name. Throws InputError where one
-    // is damaged.
+    // The grids of these names, by several threads; null where there is none of that name. Throws InputError
+    // where one is damaged.
     std::vector<openvdb::GridBase::Ptr> read(const std::vector<std::string>& gridNames);
     // Bytes of the file that were looked at so far.
     std::int64_t bytesRead() const;
@@ -49,9 +51,9 @@ class VdbParts {
     std::unique_ptr<State> state_;
 };
 
-// Temporary name, then rename. Throws OperationError. Active values and masks, neither Blosc nor zip (files with either
-// are read); single grids can be read by openvdb::io::File, and vdb_print lists them. By several threads; beyond the
-// grids it takes 16 MB at most, whatever their size.
+// Temporary name, then rename. Throws OperationError. Active values and masks, neither Blosc nor zip (files
+// with either are read); single grids can be read by openvdb::io::File, and vdb_print lists them. By several
+// threads; beyond the grids it takes 16 MB at most, whatever their size.
 void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
               const openvdb::MetaMap& metadata = {});
 

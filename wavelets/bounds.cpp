@@ -71,8 +71,8 @@ DroppedDetails dropDetails(Pyramid& pyramid, std::span<const double> below, cons
         step.details = step.details->deepCopy();  // others may hold on to them
         const DetailGrid::Ptr out = takeOut(*step.details, below[s], result.dropped);
         result.details += static_cast<std::int64_t>(out->activeVoxelCount());
-        // Synthesis is linear but for the accessory values, which are the same with and without: the field moves by the
-        // synthesis of what was taken out, with K = 0.
+        // Synthesis is linear but for the accessory values, which are the same with and without: the field
+        // moves by the synthesis of what was taken out, with K = 0.
         change = synthesiseDirection(change, *out, *step.shape, step.axis, progress);
         bound = boundDirection(bound, *out, *step.shape, step.axis, progress);
         rounding *= kRounding;

@@ -8,7 +8,7 @@
 
 namespace isowave::wavelets {
 
-void ColumnLines::look(const Column& column, int axis) {
+void ColumnLines::findLeaves(const Column& column, int axis) {
     column_ = &column;
     axis_ = axis;
     firstLeaf_ = (column.first - 1) & ~std::int64_t(1);

@@ -1,7 +1,8 @@
-// A column of leaves at work: its lines' intervals and what is known of its points.
+// One column of leaves while it is transformed: the intervals of its lines, and which of its lattice points
+// are known.
 //
-// Positions within a column are counted from the first fine leaf of an even index that lies at least one leaf before
-// the column's first, so that coarse position = fine position / 2 and accessory points have a place.
+// Positions within a column are counted from the first fine leaf of an even index that lies at least one leaf
+// before the column's first, so that coarse position = fine position / 2 and accessory points have a place.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +11,24 @@
 #include "volume/leaf_words.h"
 #include "volume/vdb.h"
 #include "wavelets/columns.h"
-#include "wavelets/interval/interval.h"
+#include "wavelets/interval/runs.h"
 #include "wavelets/line_plan.h"
 
 namespace isowave::wavelets {
 
 using BoolLeaf = openvdb::BoolTree::LeafNodeType;
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
-// Not registered with their trees, which costs more than what they are used for; trees do not change while they live.
+// Accessors that are not registered with their trees: registering costs more than the few lookups, and the
+// trees do not change while an accessor lives.
 using ShapeAccessor = openvdb::tree::ValueAccessor<const openvdb::BoolTree, false>;
 using FloatAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
 
 // Its memory is kept from one column to the next.
 class ColumnLines {
   public:
-    // Which leaves there are. Does not touch them, so that they can be asked for meanwhile.
+    // Finds the column's leaves without reading them, so that they can be prefetched meanwhile.
     // REQUIRES: `column` outlives the calls below.
-    void look(const Column& column, int axis);
+    void findLeaves(const Column& column, int axis);
     // Throws InputError where a run is shorter than four points.
     void plan(const ShapeAccessor& shape);
 

@@ -1,6 +1,6 @@
-// Columns of leaves: the leaves of a tree that share the two coordinates other than a given axis, cut where several
-// leaves in a row are missing. The unit of work of a direction: a line along the axis stays within its column, and
-// fine columns map to coarse ones one to one.
+// Columns of leaves: the leaves of a tree that share the two coordinates other than a given axis, cut where
+// several leaves in a row are missing. The unit of work of a direction: a line along the axis stays within
+// its column, and fine columns map to coarse ones one to one.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ constexpr int offsetOf(int axis, int line, int position) {
            position * kLeafStride[axis];
 }
 
-// One column, or a part of one: leaf k of it (k = position >> 3 along the axis) is leaves[k - first], or null where
-// there is none.
+// One column, or a part of one: leaf k of it (k = position >> 3 along the axis) is leaves[k - first], or null
+// where there is none.
 struct Column {
     using Leaf = const openvdb::BoolTree::LeafNodeType;
 
@@ -46,14 +46,14 @@ struct Column {
     }
 };
 
-// All columns of a shape along an axis. So many leaves are missing between two columns of the same (u, v) that no interval
-// and no coarse leaf reaches from one to the other (an interval ends at most one position beyond its run, and two are
-// joined across four; the coarse leaf at the end of a column covers at most two fine leaves beyond it): work and memory go
-// with the leaves, not with the length of the domain.
+// All columns of a shape along an axis. So many leaves are missing between two columns of the same (u, v)
+// that no interval and no coarse leaf reaches from one to the other (an interval ends at most one position
+// beyond its run, and two are joined across four; the coarse leaf at the end of a column covers at most two
+// fine leaves beyond it): work and memory go with the leaves, not with the length of the domain.
 //
-// In blocks: the columns of one block share the internal nodes above their leaves, in this tree and in that of the coarse
-// ones, and no other block's columns do. Within a block they are sorted by (u, v) and position. The leaves themselves are
-// not looked at.
+// In blocks: the columns of one block share the internal nodes above their leaves, in this tree and in that
+// of the coarse ones, and no other block's columns do. Within a block they are sorted by (u, v) and position.
+// The leaves themselves are not looked at.
 class Columns {
   public:
     static constexpr int kGap = 4;

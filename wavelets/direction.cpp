@@ -15,17 +15,16 @@
 
 #include "isowave/error.h"
 #include "volume/tiles.h"
-#include "wavelets/bounds.h"
+#include "wavelets/batch_queue.h"
 #include "wavelets/column_lines.h"
 #include "wavelets/interval/batch.h"
 #include "wavelets/line_values.h"
-#include "wavelets/waiting_room.h"
 
 // Both directions of the transform run the same passes on a handful of columns at a time:
 //   plan       what is known, from the shape's masks -> intervals, and the coarse control points and details they have;
 //              the leaves that will hold results. The values that are read next are asked for meanwhile.
 //   gather     the values of leaves -> lines
-//   transform  intervals of one length, eight at a time (waiting_room.h, interval_batch.h)
+//   transform  intervals of one length, eight at a time (batch_queue.h, interval/batch.h)
 //   scatter    lines -> leaves; where nothing is known: ±K by sign, details 0
 // Leaves are made by the thread that owns the column and hung into the trees at the end.
 
@@ -35,10 +34,10 @@ static_assert(kSlack <= kLeafDim, "what a batch reads behind a line is there (Li
 
 namespace {
 
-// ---- leaves ---------------------------------------------------------------------------------------------
+// ---- leaves
 
-// Leaves lie all over memory: they are asked for before they are needed. Inlined, or the compiler takes such functions for
-// ones without effect and leaves out the calls (g++ 12).
+// Leaves lie all over memory: they are asked for before they are needed. Inlined, or the compiler takes such
+// functions for ones without effect and leaves out the calls (g++ 12).
 template <class T>
 ISOWAVE_INLINE void prefetch(const T* begin, std::size_t count) {
     constexpr std::size_t kCacheLine = 64;
@@ -96,7 +95,7 @@ struct Sink {
     LeafWords known, inside;
 };
 
-// ---- tasks ----------------------------------------------------------------------------------------------
+// ---- tasks
 
 struct ColumnAtWork {
     ColumnLines lines;
@@ -123,8 +122,8 @@ void scatter(const LineValues& lines, int axis, float K, const std::vector<Sink>
 // The scratch of one thread.
 struct Scratch {
     BatchTransform transform;
-    WaitingRoom<AnalysisBatch> analyses;
-    WaitingRoom<SynthesisBatch> syntheses;
+    BatchQueue<AnalysisBatch> analyses;
+    BatchQueue<SynthesisBatch> syntheses;
     std::vector<ColumnAtWork> columns;
 
     std::span<ColumnAtWork> take(std::size_t count) {
@@ -133,13 +132,13 @@ struct Scratch {
     }
 };
 
-ISOWAVE_INLINE void lookAt(const Column& found, int axis, ColumnAtWork& column) {
-    column.lines.look(found, axis);
+ISOWAVE_INLINE void findLeaves(const Column& found, int axis, ColumnAtWork& column) {
+    column.lines.findLeaves(found, axis);
     for (const BoolLeaf* leaf : found.leaves)
         if (leaf) prefetch(leaf, 1);
 }
 
-// ---- analysis of some columns ---------------------------------------------------------------------------
+// ---- analysis of some columns
 
 // What is not known is ±K in the field's own leaves too: they are read as they are, accessory points and all.
 void findFine(const FloatAccessor& controlPoints, ColumnAtWork& column) {
@@ -188,18 +187,18 @@ void makeCoarseLeaves(ColumnAtWork& column, CoarseColumns& out) {
 }
 
 void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& columns, Columns::Range range,
-                    Scratch& scratch, CoarseColumns& made) {
+                    Scratch& scratch, CoarseColumns& result) {
     const ShapeAccessor shape(fine.shape->tree());
     const FloatAccessor controlPoints(fine.controlPoints->tree());
     const auto atWork = scratch.take(range.end - range.begin);
     for (std::size_t i = 0; i < atWork.size(); ++i) {
-        lookAt(columns[range.begin + i], axis, atWork[i]);
+        findLeaves(columns[range.begin + i], axis, atWork[i]);
         findFine(controlPoints, atWork[i]);
     }
     for (ColumnAtWork& column : atWork) {
         column.lines.plan(shape);
         askForValues(column.fineSources);
-        makeCoarseLeaves(column, made);
+        makeCoarseLeaves(column, result);
     }
     for (ColumnAtWork& column : atWork) gatherFine(axis, K, column);
     const auto run = [&](const AnalysisBatch& batch) { scratch.transform.analyse(batch); };
@@ -217,16 +216,17 @@ void analyseColumns(const BSplineField& fine, int axis, float K, const Columns& 
                 run);
         });
     }
-    scratch.analyses.runAll(run);
+    scratch.analyses.flush(run);
     for (const ColumnAtWork& column : atWork) {
         scatter(column.coarse, axis, K, column.coarseSinks);
         scatter(column.detail, axis, 0, column.detailSinks);
     }
 }
 
-// ---- synthesis of some columns --------------------------------------------------------------------------
+// ---- synthesis of some columns
 
-// The leaves of a tree under a column's coarse leaves. Throws InputError where one lacks a value that the step needs.
+// The leaves of a tree under a column's coarse leaves. Throws InputError where one lacks a value that the
+// step needs.
 void findCoarse(const FloatAccessor& tree, const ColumnLines& lines,
                 LeafWords (ColumnLines::*needed)(int) const, const char* what, std::vector<Source>& sources) {
     sources.clear();
@@ -256,11 +256,11 @@ using ToFine = void (BatchTransform::*)(const SynthesisBatch&);
 
 void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
                        int axis, float K, ToFine toFine, const Columns& columns, Columns::Range range,
-                       Scratch& scratch, FineColumns& made) {
+                       Scratch& scratch, FineColumns& result) {
     const ShapeAccessor shape(fineShape.tree());
     const FloatAccessor controlPoints(coarse.controlPoints->tree()), detailTree(details.tree());
     const auto atWork = scratch.take(range.end - range.begin);
-    for (std::size_t i = 0; i < atWork.size(); ++i) lookAt(columns[range.begin + i], axis, atWork[i]);
+    for (std::size_t i = 0; i < atWork.size(); ++i) findLeaves(columns[range.begin + i], axis, atWork[i]);
     for (ColumnAtWork& column : atWork) {
         column.lines.plan(shape);
         findCoarse(controlPoints, column.lines, &ColumnLines::coarseKnown, "control point",
@@ -268,7 +268,7 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
         findCoarse(detailTree, column.lines, &ColumnLines::stored, "detail", column.detailSources);
         askForValues(column.coarseSources);
         askForValues(column.detailSources);
-        makeFineLeaves(column, made);
+        makeFineLeaves(column, result);
     }
     for (ColumnAtWork& column : atWork) {
         column.coarse.reset(column.lines.coarseLeafCount());
@@ -293,17 +293,17 @@ void synthesiseColumns(const BSplineField& coarse, const DetailGrid& details, co
                 run);
         });
     }
-    scratch.syntheses.runAll(run);
+    scratch.syntheses.flush(run);
     for (const ColumnAtWork& column : atWork) scatter(column.fine, axis, K, column.fineSinks);
 }
 
-// ---- columns in parallel --------------------------------------------------------------------------------
+// ---- columns in parallel
 
 // What the columns of one direction become, by task: some columns of one block.
-template <class Made>
+template <class Result>
 class Tasks {
   public:
-    // Calls work(columns, scratch, made).
+    // Calls work(columns, scratch, result).
     template <class Work>
     Tasks(const Columns& columns, const Progress& progress, const Work& work) {
         constexpr std::size_t kMostColumns = 4, kTasks = 64;
@@ -315,21 +315,21 @@ class Tasks {
                 ranges.push_back({begin, std::min(begin + grain, block.end)});
             blocks_.back().end = ranges.size();
         }
-        made_.resize(ranges.size());
+        results_.resize(ranges.size());
         tbb::enumerable_thread_specific<Scratch> scratch;
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, ranges.size()),
             [&](const auto& some) {
                 for (std::size_t i = some.begin(); i < some.end(); ++i) {
                     progress.check();
-                    work(ranges[i], scratch.local(), made_[i]);
+                    work(ranges[i], scratch.local(), results_[i]);
                 }
             },
             tbb::simple_partitioner());
     }
 
-    // Hangs all leaves of one kind into a tree that has none; leavesOf(made). No two blocks share an internal node: these are
-    // filled side by side.
+    // Hangs all leaves of one kind into a tree that has none; leavesOf(result). No two blocks share an
+    // internal node: these are filled side by side.
     template <class Tree, class LeavesOf>
     void hang(Tree& tree, const LeavesOf& leavesOf) {
         using Upper = typename Tree::RootNodeType::ChildNodeType;
@@ -341,8 +341,8 @@ class Tasks {
             constexpr std::size_t kAhead = 2;  // tasks
             for (std::size_t i = blocks_[block].begin; i < blocks_[block].end; ++i) {
                 if (i + kAhead < blocks_[block].end)
-                    for (const auto& leaf : leavesOf(made_[i + kAhead])) prefetch(leaf.get(), 1);
-                for (auto& leaf : leavesOf(made_[i])) {
+                    for (const auto& leaf : leavesOf(results_[i + kAhead])) prefetch(leaf.get(), 1);
+                for (auto& leaf : leavesOf(results_[i])) {
                     const openvdb::Coord origin = leaf->origin() & ~(static_cast<int>(Lower::DIM) - 1);
                     if (!node || node->origin() != origin) {
                         auto& place = nodes[block][origin];
@@ -364,7 +364,7 @@ class Tasks {
 
   private:
     std::vector<Columns::Range> blocks_;  // tasks of each
-    std::vector<Made> made_;
+    std::vector<Result> results_;
 };
 
 openvdb::math::Transform::Ptr scaledAlong(const openvdb::math::Transform& transform, int axis,
@@ -381,8 +381,8 @@ BSplineField fineField(const BSplineField& coarse, const DetailGrid& details, co
     const auto K = static_cast<float>(coarse.K);
     const Columns columns(fineShape.tree(), axis);
     Tasks<FineColumns> tasks(
-        columns, progress, [&](Columns::Range range, Scratch& scratch, FineColumns& made) {
-            synthesiseColumns(coarse, details, fineShape, axis, K, toFine, columns, range, scratch, made);
+        columns, progress, [&](Columns::Range range, Scratch& scratch, FineColumns& result) {
+            synthesiseColumns(coarse, details, fineShape, axis, K, toFine, columns, range, scratch, result);
         });
 
     BSplineField fine;
@@ -391,7 +391,7 @@ BSplineField fineField(const BSplineField& coarse, const DetailGrid& details, co
     fine.controlPoints = openvdb::FloatGrid::create(K);
     auto& tree = fine.controlPoints->tree();
     tasks.hang(
-        tree, [](FineColumns & made) -> auto& { return made; });
+        tree, [](FineColumns & leaves) -> auto& { return leaves; });
     fillInsideTiles(tree, fineShape.tree(), -1, -K);
 
     const auto transform = scaledAlong(coarse.transform(), axis, 0.5);
@@ -407,8 +407,8 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
     const openvdb::BoolTree& fineShape = fine.shape->tree();
     const Columns columns(fineShape, axis);
     Tasks<CoarseColumns> tasks(columns, progress,
-                               [&](Columns::Range range, Scratch& scratch, CoarseColumns& made) {
-                                   analyseColumns(fine, axis, K, columns, range, scratch, made);
+                               [&](Columns::Range range, Scratch& scratch, CoarseColumns& result) {
+                                   analyseColumns(fine, axis, K, columns, range, scratch, result);
                                });
 
     DirectionResult result;
@@ -420,18 +420,18 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
         [&] {
             auto& tree = result.coarse.controlPoints->tree();
             tasks.hang(
-                tree, [](CoarseColumns & made) -> auto& { return made.controlPoints; });
+                tree, [](CoarseColumns & leaves) -> auto& { return leaves.controlPoints; });
             fillInsideTiles(tree, fineShape, axis, -K);
         },
         [&] {
             auto& tree = result.coarse.shape->tree();
             tasks.hang(
-                tree, [](CoarseColumns & made) -> auto& { return made.shape; });
+                tree, [](CoarseColumns & leaves) -> auto& { return leaves.shape; });
             fillInsideTiles(tree, fineShape, axis, true);
         },
         [&] {
             tasks.hang(
-                result.details->tree(), [](CoarseColumns & made) -> auto& { return made.details; });
+                result.details->tree(), [](CoarseColumns & leaves) -> auto& { return leaves.details; });
         });
 
     const auto transform = scaledAlong(fine.transform(), axis, 2.0);

@@ -26,4 +26,11 @@ DirectionResult analyseDirection(const BSplineField& fine, int axis, const Progr
 BSplineField synthesiseDirection(const BSplineField& coarse, const DetailGrid& details,
                                  const Shape& fineShape, int axis, const Progress& progress = {});
 
+// How far errors spread (wavelets/bounds.h says why). coarse: a field of K = 0 whose control points are how
+// far those of a coarse field move at most, either way; details: likewise. Returns, as a field of K = 0, how
+// far each fine control point moves at most. For errors that are known by their size only: rounding,
+// quantisation.
+BSplineField boundDirection(const BSplineField& coarse, const DetailGrid& details, const Shape& fineShape,
+                            int axis, const Progress& progress = {});
+
 }  // namespace isowave::wavelets

@@ -12,8 +12,8 @@ namespace isowave::wavelets {
 inline constexpr int kLeafLog2 = 3, kLeafDim = 8, kLinesPerLeaf = kLeafDim * kLeafDim;
 
 using Word = std::uint64_t;
-// A leaf's bits (LeafWords) by lines: word i, byte j holds the eight positions of line 8i + j along an axis, lowest first;
-// i and j are the coordinates on the two other axes in ascending order.
+// A leaf's bits (LeafWords) by lines: word i, byte j holds the eight positions of line 8i + j along an axis,
+// lowest first; i and j are the coordinates on the two other axes in ascending order.
 using LeafLines = std::array<Word, kLeafDim>;
 
 // Bit 8i + j -> bit 8j + i (Warren: Hacker's Delight, 7-3).
@@ -42,8 +42,8 @@ constexpr void transposeBytes(std::array<std::array<Word, kMany>, 8>& words) {
                 }
 }
 
-// z: word x is bytes y already. y: each word transposed. x: byte y of the eight words, side by side and transposed, is the
-// eight lines of that y.
+// z: word x is bytes y already. y: each word transposed. x: byte y of the eight words, side by side and
+// transposed, is the eight lines of that y.
 constexpr LeafLines linesOf(const LeafWords& words, int axis) {
     if (axis == 2) return words;
     LeafLines lines{};

@@ -1,5 +1,6 @@
-// From what is known along the lines of a column to their intervals (interval.h) and to what the coarse step knows and
-// stores. All 64 lines at once, 64 positions a word; the algebra is that of sets of positions:
+// From what is known along the lines of a column to their intervals (interval/interval.h) and to what the
+// coarse step knows and stores. All 64 lines at once, 64 positions a word; the algebra is that of sets of
+// positions:
 //
 //   K   known                                        a run is a maximal row of ones
 //   J0  K, and the odd neighbours of its even ends   odd ends: both neighbours of every even point of K
@@ -12,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "wavelets/interval/interval.h"
+#include "wavelets/interval/runs.h"
 #include "wavelets/interval/vectors.h"
 #include "wavelets/line_bits.h"
 
@@ -47,8 +48,8 @@ class LinePlan {
     const LeafLines& stored(int k) const { return coarse_[coarseAt(k) + kCoarseLeaves]; }
 
   private:
-    // Lines in planes of 64 positions: word 64p + 8j + i is positions 64p .. 64p + 63 of line 8i + j. Plane -1 and the one
-    // behind the last are 0.
+    // Lines in planes of 64 positions: word 64p + 8j + i is positions 64p .. 64p + 63 of line 8i + j. Plane
+    // -1 and the one behind the last are 0.
     static constexpr int kPlaneWords = kLinesPerLeaf, kLeavesPerPlane = 8,
                          kCoarseLeaves = kLeavesPerPlane / 2;
     class Planes {

@@ -4,9 +4,9 @@
 
 #include "wavelets/interval/blocks.h"
 
-// Line 8a + b of a leaf, a and b the coordinates on the two other axes in ascending order. A block is the eight lines of one
-// a: for z its rows are rows of the leaf (x = a, y = b); for y they are those of x = a, transposed; for x those of y = a,
-// 64 values apart, transposed.
+// Line 8a + b of a leaf, a and b the coordinates on the two other axes in ascending order. A block is the
+// eight lines of one a: for z its rows are rows of the leaf (x = a, y = b); for y they are those of x = a,
+// transposed; for x those of y = a, 64 values apart, transposed.
 
 namespace isowave::wavelets {
 namespace {

@@ -1,5 +1,4 @@
-// The values of a column of leaves, line by line: what a line's intervals need lies one behind the other, along whichever
-// axis.
+// The values of a column of leaves, line by line: the values of a line are contiguous, whatever the axis.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +15,8 @@ class LineValues {
     // Tests choose narrower vectors.
     explicit LineValues(Vectors vectors = widestVectors()) : vectors_(vectors) {}
 
-    // Leaves 0 .. leafCount - 1, positions 0 .. 8 leafCount - 1. Values are what they happen to be. Keeps its memory.
+    // Leaves 0 .. leafCount - 1, positions 0 .. 8 leafCount - 1. Values are not initialised. Keeps its
+    // memory.
     void reset(int leafCount);
 
     // Values of line l, which begins at position 0; behind its last are kLeafDim more that belong to no line.

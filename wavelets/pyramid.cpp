@@ -7,9 +7,10 @@ namespace {
 
 constexpr std::int64_t kOneNode = 4 * 4 * 4;  // control points of a single node
 
-// Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so fields end
-// at 64 control points; on the way the number of control points may stay for many steps while the domain moves on. A
-// domain that straddles the origin stays at -2 .. 2 instead: then three directions in a row change nothing.
+// Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so
+// fields end at 64 control points; on the way the number of control points may stay for many steps while the
+// domain moves on. A domain that straddles the origin stays at -2 .. 2 instead: then three directions in a
+// row change nothing.
 struct Extent {
     std::int64_t controlPoints;
     openvdb::CoordBBox box;
@@ -19,8 +20,8 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-// Halves direction after direction. onDirection(axis, shape, details): the shape of the finer field and what leads
-// back to it.
+// Halves direction after direction. onDirection(axis, shape, details): the shape of the finer field and what
+// leads back to it.
 template <class OnDirection>
 BSplineField halveAll(BSplineField current, const AnalyseOptions& options, const Progress& progress,
                       const std::function<void(int, const BSplineField&)>& onStep,

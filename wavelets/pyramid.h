@@ -1,4 +1,4 @@
-// The pyramid: a field taken apart, step by step, down to one node; any step can be had back.
+// The pyramid: a field decomposed, step by step, down to one node. The field of every step can be restored.
 //
 // step s is the field after s directions have been halved (axes cycle x, y, z); step 0 is the field itself.
 // level l is step 3l.
@@ -15,8 +15,8 @@
 
 namespace isowave::wavelets {
 
-// What turned the field of step s into that of step s + 1. shape and details are null where a reader left them out
-// (pyramid_file.h).
+// What turned the field of step s into that of step s + 1. shape and details are null where a reader left
+// them out (pyramid_file.h).
 struct Step {
     int axis = 0;      // the direction that was halved
     Shape::Ptr shape;  // of step s
@@ -31,7 +31,8 @@ struct Pyramid {
     std::map<std::string, std::string> source;
 
     int stepCount() const { return static_cast<int>(steps.size()); }
-    // The field of a step, 0 <= step <= stepCount(). REQUIRES: shape and details of that step and all after it.
+    // The field of a step, 0 <= step <= stepCount(). REQUIRES: shape and details of that step and all after
+    // it.
     BSplineField field(int step, const Progress& progress = {}) const;
     // Details of all steps plus the control points of the coarsest field.
     std::int64_t coefficientsStored() const;
@@ -46,8 +47,8 @@ struct AnalyseOptions {
 Pyramid analyse(const BSplineField& field, const AnalyseOptions& options = {}, const Progress& progress = {},
                 const std::function<void(int step, const BSplineField&)>& onStep = {});
 
-// The same way down without a pyramid: details are counted and let go. Memory: two fields, that of a step and the
-// next coarser one with its details; step 0 goes too, unless somebody else holds on to it.
+// The same way down without a pyramid: details are counted and let go. Memory: two fields, that of a step and
+// the next coarser one with its details; step 0 goes too, unless somebody else holds on to it.
 struct Descent {
     BSplineField coarsest;
     int steps = 0;

@@ -21,12 +21,13 @@ inline constexpr int kPyramidFormatVersion = 1;
 // Temporary name, then rename. Throws OperationError.
 void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid);
 
-// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, K not a positive number,
-// parts missing, a coarsest field and shape that differ. Whether the details of each step belong to its shape is found
-// out, with an InputError too, when that step is synthesised.
-// finestStep: what only finer steps need is not read, and not looked at even if it is damaged: the pyramid's steps
-// 0 .. finestStep - 1 have neither shape nor details then, and field(step) takes step >= finestStep only.
-// bytesRead: how many bytes of the file that took, out of curiosity.
+// Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, K not a positive
+// number, parts missing, a coarsest field and shape that differ. Whether the details of each step belong to
+// its shape is found out, with an InputError too, when that step is synthesised.
+// finestStep: what only finer steps need is not read, and not looked at even if it is damaged: the pyramid's
+// steps 0 .. finestStep - 1 have neither shape nor details then, and field(step) takes step >= finestStep
+// only.
+// bytesRead: optional second result, how many bytes of the file were read.
 Pyramid readPyramid(const std::filesystem::path& path, int finestStep = 0, std::int64_t* bytesRead = nullptr);
 
 // Whether the file is a .vdb that calls itself a pyramid, of whatever version. False for anything else,

@@ -1,4 +1,5 @@
-// What every image must satisfy, whatever file it came from.
+#include "io/image/check.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,7 +8,6 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "io/image/source.h"
 
 namespace isowave::imageio {
 
@@ -114,8 +114,8 @@ void settleGeometry(const std::string& file, Header& header, const ImageReadOpti
     // det of the unit axes: the volume of the cell that they span, 1 for orthogonal ones. Below 1e-6 they lie
     // in a plane, or one has no length.
     const auto& axis = header.axis;
-    const double volume = axis[0].cross(axis[1]).dot(axis[2]);
-    const double lengths = axis[0].length() * axis[1].length() * axis[2].length();
+    const double volume = dot(cross(axis[0], axis[1]), axis[2]);
+    const double lengths = length(axis[0]) * length(axis[1]) * length(axis[2]);
     if (!(std::abs(volume) > 1e-6 * lengths) || !std::isfinite(lengths)) {
         std::string text;
         for (int a = 0; a < 3; ++a)
@@ -132,7 +132,7 @@ void settleGeometry(const std::string& file, Header& header, const ImageReadOpti
                                                header.origin[1], header.origin[2]));
 }
 
-void NotFinite::look(const float* values, std::int64_t n, std::int64_t from) {
+void NotFinite::countIn(const float* values, std::int64_t n, std::int64_t from) {
     // The exponent's bits are all set in NaNs and infinities alone; whole pieces without one go by fast.
     constexpr std::uint32_t kExponent = 0x7f800000;
     const auto bad = [](float v) { return (std::bit_cast<std::uint32_t>(v) & kExponent) == kExponent; };

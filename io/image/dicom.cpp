@@ -3,6 +3,8 @@
 // The third axis of a series is the step from its first slice to its last, divided by their number less one.
 // For an untilted scan that is the normal of the slices times their distance, as itk::ImageSeriesReader has
 // it; for a tilted gantry it leans, and the voxels stay where the scanner saw them.
+#include "io/image/dicom.h"
+
 #include <fmt/format.h>
 #include <gdcmDirectory.h>
 #include <gdcmImageHelper.h>
@@ -13,14 +15,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/image/check.h"
+#include "io/image/dicom_check.h"
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
 namespace {
-
-using openvdb::Vec3d;
 
 // GDCM talks to the terminal about every oddity, and ignores the rescaling of MR images unless told. Both are
 // switches of the library, global there; ITK's own reader sets the second one too.
@@ -31,7 +32,7 @@ void prepareGdcm() {
     gdcm::ImageHelper::SetForceRescaleInterceptSlope(true);
 }
 
-// ------------------------------------------------------------------------------------ pixels of a file
+// ---- pixels of a file
 
 ValueType typeOf(const std::string& file, const gdcm::PixelFormat& format) {
     switch (format.GetScalarType()) {
@@ -138,17 +139,17 @@ void takePlane(const DicomImage& dicom, Header& header) {
     const double* spacing = dicom.image().GetSpacing();
     const double* origin = dicom.image().GetOrigin();
     // Cosines are rounded to six digits or so; ITK makes them unit vectors again, and so do we.
-    const auto unit = [](const Vec3d& v) { return v.length() > 0 ? v / v.length() : v; };
-    header.axis[0] = unit(Vec3d(cosines[0], cosines[1], cosines[2]));
-    header.axis[1] = unit(Vec3d(cosines[3], cosines[4], cosines[5]));
-    header.axis[2] = unit(header.axis[0].cross(header.axis[1]));
+    const auto unit = [](const Vec3& v) { return length(v) > 0 ? v / length(v) : v; };
+    header.axis[0] = unit(Vec3{cosines[0], cosines[1], cosines[2]});
+    header.axis[1] = unit(Vec3{cosines[3], cosines[4], cosines[5]});
+    header.axis[2] = unit(cross(header.axis[0], header.axis[1]));
     header.spacing = {spacing[0], spacing[1], spacing[2]};
-    header.origin = Vec3d(origin[0], origin[1], origin[2]);
+    header.origin = Vec3{origin[0], origin[1], origin[2]};
 }
 
 }  // namespace
 
-// ---------------------------------------------------------------------------------- a folder of slices
+// ---- a folder of slices
 
 namespace {
 
@@ -157,8 +158,8 @@ struct Slice {
     std::string uid, description;
     std::string problem;  // why its pixels cannot be used; empty when they can
     std::int64_t rows = 0, columns = 0, frames = 1, instance = 0;
-    std::optional<Vec3d> position;      // ImagePositionPatient: the centre of the first pixel
-    std::optional<Vec3d> row, column;   // ImageOrientationPatient
+    std::optional<Vec3> position;       // ImagePositionPatient: the centre of the first pixel
+    std::optional<Vec3> row, column;    // ImageOrientationPatient
     double thickness = 0, between = 0;  // SliceThickness; SpacingBetweenSlices; 0 where not said
 
     // Slices that say nothing of their places: their distance is all there is. One slice alone: its
@@ -171,8 +172,8 @@ struct Slice {
     bool placed() const { return position && row && column; }
     bool fits(const Slice& other) const {
         // 1e-3 of a radian: what scanners round their cosines to.
-        const auto same = [](const std::optional<Vec3d>& a, const std::optional<Vec3d>& b) {
-            return a.has_value() == b.has_value() && (!a || (*a - *b).length() < 1e-3);
+        const auto same = [](const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
+            return a.has_value() == b.has_value() && (!a || length(*a - *b) < 1e-3);
         };
         return uid == other.uid && rows == other.rows && columns == other.columns && frames == other.frames &&
                placed() == other.placed() && same(row, other.row) && same(column, other.column);
@@ -236,10 +237,10 @@ Slice sliceOf(const gdcm::Scanner& scanner, const fs::path& path) {
     slice.instance = static_cast<std::int64_t>(number(kInstance, 0));
     slice.thickness = number(kThickness, 0);
     slice.between = number(kBetween, 0);
-    if (const auto p = numbersOf(text(kPosition)); p.size() == 3) slice.position = Vec3d(p[0], p[1], p[2]);
+    if (const auto p = numbersOf(text(kPosition)); p.size() == 3) slice.position = Vec3{p[0], p[1], p[2]};
     if (const auto o = numbersOf(text(kOrientation)); o.size() == 6) {
-        slice.row = Vec3d(o[0], o[1], o[2]);
-        slice.column = Vec3d(o[3], o[4], o[5]);
+        slice.row = Vec3{o[0], o[1], o[2]};
+        slice.column = Vec3{o[3], o[4], o[5]};
     }
     return slice;
 }
@@ -322,22 +323,11 @@ Stack pick(const std::string& folder, std::vector<Stack> stacks, const std::opti
                                       : "give one by its UID or a part of it (--series)"));
 }
 
-// -------------------------------------------------------------------------------- where the slices lie
+// ---- where the slices lie
 
-// Sorts the stack along its normal and puts its third axis and origin into the header.
-// Throws InputError for two slices at one place and for a gap.
-void placeStack(const std::string& folder, Stack& stack, Header& header) {
-    const Vec3d normal = stack[0].row->cross(*stack[0].column).unit();
-    const auto height = [&](const Slice& s) { return s.position->dot(normal); };
-    std::stable_sort(stack.begin(), stack.end(),
-                     [&](const Slice& a, const Slice& b) { return height(a) < height(b); });
-    header.origin = *stack[0].position;
-    if (stack.size() == 1) {
-        header.spacing[2] = stack[0].height(true);
-        return;
-    }
-    std::vector<double> gaps;
-    for (std::size_t i = 1; i < stack.size(); ++i) gaps.push_back(height(stack[i]) - height(stack[i - 1]));
+// gaps[i]: from slice i to the next. Throws InputError for two slices at one place and for a gap.
+void checkGaps(const std::string& folder, const Stack& stack, const std::vector<double>& gaps,
+               Header& header) {
     std::vector<double> sorted = gaps;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                      sorted.end());
@@ -361,15 +351,37 @@ void placeStack(const std::string& folder, Stack& stack, Header& header) {
     if (*most - *least > 0.02 * usual)
         header.warnings.push_back(
             fmt::format("slices are {:.4g} to {:.4g} mm apart; even steps are assumed", *least, *most));
+}
 
-    const Vec3d step =
+// Sorts the stack along its normal and puts its third axis and origin into the header.
+// Throws InputError for two slices at one place and for a gap.
+void placeStack(const std::string& folder, Stack& stack, Header& header) {
+    const Vec3 across = cross(*stack[0].row, *stack[0].column);
+    if (!(length(across) > 0))
+        throw InputError(folder,
+                         fmt::format("{}: its rows and columns run the same way (ImageOrientationPatient)",
+                                     stack[0].path.filename().string()));
+    const Vec3 normal = across / length(across);
+    const auto height = [&](const Slice& s) { return dot(*s.position, normal); };
+    std::stable_sort(stack.begin(), stack.end(),
+                     [&](const Slice& a, const Slice& b) { return height(a) < height(b); });
+    header.origin = *stack[0].position;
+    if (stack.size() == 1) {
+        header.spacing[2] = stack[0].height(true);
+        return;
+    }
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < stack.size(); ++i) gaps.push_back(height(stack[i]) - height(stack[i - 1]));
+    checkGaps(folder, stack, gaps, header);
+
+    const Vec3 step =
         (*stack.back().position - *stack.front().position) / static_cast<double>(stack.size() - 1);
-    header.spacing[2] = step.length();
-    header.axis[2] = step.unit();
+    header.spacing[2] = length(step);
+    header.axis[2] = step / length(step);
     // Positions are rounded, often to 0.1 mm; a lean below half a pixel over the whole stack is not worth a
     // word.
-    const double drift = (step - normal * step.dot(normal)).length() * static_cast<double>(stack.size() - 1);
-    const double tilt = std::acos(std::clamp(header.axis[2].dot(normal), -1.0, 1.0)) * 180 / M_PI;
+    const double drift = length(step - normal * dot(step, normal)) * static_cast<double>(stack.size() - 1);
+    const double tilt = std::acos(std::clamp(dot(header.axis[2], normal), -1.0, 1.0)) * 180 / M_PI;
     if (drift > 0.5 * header.spacing[0])
         header.warnings.push_back(
             fmt::format("the gantry is tilted by {:.2f} degrees; the voxels are kept so", tilt));
@@ -435,7 +447,7 @@ SourcePtr openDicomFolder(const fs::path& folder, const std::vector<fs::path>& f
     return source;
 }
 
-// -------------------------------------------------------------------------------------------- one file
+// ---- one file
 
 namespace {
 

@@ -5,6 +5,8 @@
 // damaged and over a data set that breaks off, so both are looked for here: every value must end within the
 // file, and delimiters stand only where something is to be delimited. What else is odd is left to GDCM, which
 // knows the habits of many scanners.
+#include "io/image/dicom_check.h"
+
 #include <fmt/format.h>
 
 #include <cstring>
@@ -12,7 +14,6 @@
 #include <set>
 
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;

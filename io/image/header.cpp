@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "io/image/check.h"
 #include "isowave/error.h"
 
 namespace isowave::imageio {
@@ -16,11 +17,6 @@ namespace fs = std::filesystem;
 std::string trimmed(const std::string& text) {
     const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
 }
 
 std::vector<std::int64_t> wholeNumbers(const std::string& file, const std::string& key,

@@ -1,11 +1,23 @@
-// Inside volume/: what ITK's readers hide, looked up in the headers themselves before ITK sees the file.
+// What ITK's readers hide, read from the headers themselves before ITK reads the file, and what the checks of
+// NRRD, MetaImage and NIfTI share.
 //
 // NrrdIO, MetaIO, libtiff and the NIfTI library fill what is missing with zeros, take absolute values,
-// allocate whatever a header asks for, abort, or print to the terminal. Here each header is read just far
-// enough to know how many bytes of voxels it promises and whether the file holds them. What is not understood
-// is left to ITK.
+// allocate whatever a header asks for, abort, or print to the terminal. Each check reads its header just far
+// enough to know how many bytes of voxels it promises and whether the file holds them. What it does not
+// understand is left to ITK.
+//
+// checkNrrd(), checkMetaImage(), checkNifti() throw InputError for sizes whose product overflows, voxels that
+// the file does not hold, a data file that is missing, axes without length or that hold infinities.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/image/plain.h"
 #include "io/image/source.h"
 
 namespace isowave::imageio {
@@ -21,19 +33,7 @@ struct HeaderFacts {
     std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite
 };
 
-// Each throws InputError for sizes whose product overflows, voxels that the file does not hold, a data file
-// that is missing, axes without length or that hold infinities.
-HeaderFacts checkNrrd(const std::filesystem::path& path);       // image_nrrd.cpp
-HeaderFacts checkMetaImage(const std::filesystem::path& path);  // image_metaimage.cpp
-HeaderFacts checkNifti(const std::filesystem::path& path);      // image_nifti.cpp
-void checkTiff(const std::filesystem::path& path);              // image_tiff.cpp
-void checkPng(const std::filesystem::path& path);
-void checkDicom(const std::filesystem::path& path);  // image_dicom_check.cpp
-
-// What they share, in image_header.cpp.
-
 std::string trimmed(const std::string& text);
-std::string lower(std::string text);
 
 // The whole numbers of a line; throws InputError when there is anything else in it.
 std::vector<std::int64_t> wholeNumbers(const std::string& file, const std::string& key,

@@ -1,15 +1,13 @@
 #include "isowave/image.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cctype>
-#include <fstream>
-#include <map>
 
-#include "isowave/error.h"
+#include "io/image/check.h"
 #include "io/image/kind.h"
-#include "io/image/source.h"
+#include "io/image/metaimage.h"
+#include "io/image/nrrd.h"
+#include "io/image/open_source.h"
+#include "isowave/error.h"
 
 namespace isowave {
 namespace fs = std::filesystem;
@@ -18,135 +16,16 @@ using namespace imageio;
 std::array<double, 3> Image::spacing() const {
     std::array<double, 3> result;
     for (int a = 0; a < 3; ++a) {
-        const openvdb::Vec4d row = indexToWorld.row(a);
-        result[a] = openvdb::Vec3d(row[0], row[1], row[2]).length();
+        const auto& [x, y, z] = indexToWorld.axis[a];
+        result[a] = length(Vec3{x, y, z});
     }
     return result;
 }
 
 namespace {
 
-// "slice_2" before "slice_10": runs of digits compare as numbers; ties (01, 1) by the plain text.
-bool naturalLess(const fs::path& a, const fs::path& b) {
-    const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-    const std::string s = a.filename().string(), t = b.filename().string();
-    std::size_t i = 0, j = 0;
-    while (i < s.size() && j < t.size()) {
-        if (digit(s[i]) && digit(t[j])) {
-            while (i < s.size() && s[i] == '0') ++i;
-            while (j < t.size() && t[j] == '0') ++j;
-            std::size_t m = i, n = j;
-            while (m < s.size() && digit(s[m])) ++m;
-            while (n < t.size() && digit(t[n])) ++n;
-            if (m - i != n - j) return m - i < n - j;
-            if (const int order = s.compare(i, m - i, t, j, n - j); order != 0) return order < 0;
-            i = m;
-            j = n;
-        } else if (s[i] != t[j]) {
-            return s[i] < t[j];
-        } else {
-            ++i;
-            ++j;
-        }
-    }
-    if (s.size() - i != t.size() - j) return s.size() - i < t.size() - j;
-    return a < b;
-}
-
-template <class Iterator>
-std::map<FileKind, std::vector<fs::path>> filesByKind(Iterator files) {
-    std::map<FileKind, std::vector<fs::path>> result;
-    for (const fs::directory_entry& entry : files) {
-        const std::string name = entry.path().filename().string();
-        if (!entry.is_regular_file() || name.starts_with('.') || name == "DICOMDIR") continue;
-        result[kindOf(entry.path())].push_back(entry.path());
-    }
-    for (auto& [kind, paths] : result) std::sort(paths.begin(), paths.end(), naturalLess);
-    return result;
-}
-
-// Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
-SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
-    auto files = filesByKind(fs::directory_iterator(folder));
-    const std::size_t png = files[FileKind::png].size(), tiff = files[FileKind::tiff].size();
-    if (files[FileKind::dicom].empty() && png == 0 && tiff == 0)
-        files = filesByKind(fs::recursive_directory_iterator(folder));
-    if (!files[FileKind::dicom].empty()) return openDicomFolder(folder, files[FileKind::dicom], options);
-    if (png > 0 && tiff > 0)
-        throw InputError(folder.string(),
-                         fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
-    if (png + tiff == 0) throw InputError(folder.string(), "is a folder without DICOM, TIFF or PNG slices");
-    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
-}
-
-SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
-    const std::string name = path.string();
-    if (fs::file_size(path) == 0) throw InputError(name, "is empty; expected an image");
-    if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
-    if (options.raw) return openRaw(path, options);
-    const FileKind kind = kindOf(path);
-    if (kind == FileKind::none)
-        throw InputError(
-            name,
-            "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
-            "voxels give their size and type");
-    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
-}
-
-// Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
-void checkAxes(const std::string& name, const Header& header) {
-    constexpr std::int64_t kMostOnAxis = (std::int64_t(1) << 31) - 1024;
-    for (const std::int64_t n : header.size)
-        if (n > kMostOnAxis)
-            throw InputError(name, fmt::format("its size is {}; at most {} voxels along an axis are handled; "
-                                               "crop or downsample it",
-                                               sizeText(header.size), kMostOnAxis));
-}
-
-}  // namespace
-
-SourcePtr imageio::openSource(const fs::path& path, const ImageReadOptions& options) {
-    const std::string name = path.string();
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw InputError(name, "no such file or folder");
-    const bool folder = fs::is_directory(status);
-    if (!folder && !fs::is_regular_file(status)) throw InputError(name, "is neither a file nor a folder");
-    if (folder && options.raw)
-        throw InputError(name,
-                         "is a folder; size and type describe one headerless file; give that file, or leave "
-                         "them out for a folder of slices");
-    try {
-        SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
-        settleGeometry(name, source->header, options);
-        checkAxes(name, source->header);
-        return source;
-    } catch (const fs::filesystem_error& e) {
-        throw InputError(name, "cannot be read: " + oneLine(e.code().message()));
-    }
-}
-
-Image imageio::imageOf(const Header& header) {
-    Image image;
-    image.size = header.size;
-    for (int a = 0; a < 3; ++a) {
-        const openvdb::Vec3d step = header.axis[a] * header.spacing[a] + openvdb::Vec3d(0);  // -0 + 0 = 0
-        image.indexToWorld.setRow(a, openvdb::Vec4d(step[0], step[1], step[2], 0));
-    }
-    image.indexToWorld.setRow(3, openvdb::Vec4d(header.origin[0], header.origin[1], header.origin[2], 1));
-    const ValueType stored = header.storedType.value_or(header.type);
-    image.componentType = nameOf(stored);
-    image.integral = header.integral.value_or(isIntegral(stored));
-    image.slope = header.slope;
-    image.intercept = header.intercept;
-    image.format = header.format;
-    image.warnings = header.warnings;
-    return image;
-}
-
-namespace {
-
-// Adds the files of `folder` that a pattern such as "slice%03d.raw 1 90 1" fits: what stands before and after its %.
+// Adds the files of `folder` that a pattern such as "slice%03d.raw 1 90 1" fits: what stands before and after
+// its %.
 void addFitting(const fs::path& folder, const std::string& pattern, std::vector<fs::path>& files) {
     const std::size_t percent = pattern.find('%');
     const fs::path before = folder / pattern.substr(0, percent);
@@ -183,7 +62,7 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
         inexact += source->read(z, end, image.values.data() + z * source->header.sliceVoxels());
     }
     NotFinite notFinite;
-    notFinite.look(image.values.data(), image.voxelCount(), 0);
+    notFinite.countIn(image.values.data(), image.voxelCount(), 0);
     checkFinite(path.string(), image.size, notFinite);
     if (inexact > 0) image.warnings.push_back(roundedText(inexact, image));
     progress("reading", 1);

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "io/image/header.h"
+#include "base/text.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -30,9 +30,9 @@ FileKind kindByName(const fs::path& path) {
         {".mhd", FileKind::meta},   {".nii", FileKind::nifti}, {".tif", FileKind::tiff},
         {".tiff", FileKind::tiff},  {".png", FileKind::png},   {".dcm", FileKind::dicom},
         {".dicom", FileKind::dicom}};
-    const std::string name = lower(path.filename().string());
+    const std::string name = toLower(path.filename().string());
     if (name.ends_with(".nii.gz")) return FileKind::nifti;
-    const auto found = kinds.find(lower(path.extension().string()));
+    const auto found = kinds.find(toLower(path.extension().string()));
     return found == kinds.end() ? FileKind::none : found->second;
 }
 

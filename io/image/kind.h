@@ -1,4 +1,4 @@
-// Inside volume/: what kind of image a file is, by its name or, where that says nothing, by its first bytes.
+// What kind of image a file is, by its name or, where that says nothing, by its first bytes.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,7 @@
 // MetaImage headers before MetaIO sees them: it prints what it dislikes and leaves unread voxels as they
 // were.
+#include "io/image/metaimage.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +13,9 @@
 #include <set>
 #include <sstream>
 
+#include "base/text.h"
+#include "io/image/check.h"
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -38,7 +41,7 @@ struct MetaText {
         const auto found = field.find(key);
         return found == field.end() ? std::string() : found->second;
     }
-    bool yes(const std::string& key) const { return lower(get(key)).starts_with('t') || get(key) == "1"; }
+    bool yes(const std::string& key) const { return toLower(get(key)).starts_with('t') || get(key) == "1"; }
 };
 
 bool countedByNDims(const std::string& key) {
@@ -86,8 +89,8 @@ MetaText metaText(const fs::path& path) {
                      "its header has no 'ElementDataFile'; it is truncated or not a MetaImage");
 }
 
-// The numbers of a field, or nothing when a word of it is none. MetaIO knows neither 0x10 nor 1e, and prints what it
-// thinks of them.
+// The numbers of a field, or nothing when a word of it is none. MetaIO knows neither 0x10 nor 1e, and prints
+// what it thinks of them.
 std::vector<double> plainNumbers(const std::string& text) {
     std::vector<double> result;
     std::istringstream words(text);
@@ -137,7 +140,7 @@ std::optional<PlainData> checkMetaData(const fs::path& path, const MetaText& tex
                                        std::int64_t bytesEach, const std::string& promise) {
     const std::int64_t needed = count * bytesEach;
     const std::string data = text.get("ElementDataFile"), name = path.string();
-    const bool local = lower(data) == "local";
+    const bool local = toLower(data) == "local";
     if (data.starts_with("LIST") || data.find('%') != std::string::npos)
         return std::nullopt;  // many files: MetaIO opens each
     const fs::path file = local ? path : path.parent_path() / data;
@@ -168,7 +171,7 @@ std::optional<PlainData> checkMetaData(const fs::path& path, const MetaText& tex
 std::vector<std::string> metaVoxelFiles(const fs::path& path) {
     const MetaText text = metaText(path);
     const std::string data = text.get("ElementDataFile");
-    if (lower(data) == "local") return {};
+    if (toLower(data) == "local") return {};
     if (!data.starts_with("LIST")) return {data};
     std::vector<std::string> names;
     std::istringstream lines(headerFileText(path).substr(static_cast<std::size_t>(text.end)));

@@ -1,4 +1,6 @@
 // NIfTI-1 headers (nifti1.h) before the NIfTI library sees them.
+#include "io/image/nifti.h"
+
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -10,8 +12,8 @@
 #include <map>
 #include <set>
 
+#include "io/image/check.h"
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -70,10 +72,10 @@ bool isGzip(const fs::path& path) {
 }
 
 // ITK takes a sform whose axes are at right angles only. (A qform, always a rotation, would stand in.)
-void checkNiftiAngles(const std::string& file, const std::array<openvdb::Vec3d, 3>& axis) {
+void checkNiftiAngles(const std::string& file, const std::array<Vec3, 3>& axis) {
     for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3;
-        const double cosine = axis[a].dot(axis[b]) / (axis[a].length() * axis[b].length());
+        const double cosine = dot(axis[a], axis[b]) / (length(axis[a]) * length(axis[b]));
         if (std::abs(cosine) > 0.01)
             throw InputError(
                 file,
@@ -115,14 +117,13 @@ void checkNiftiOrientation(const std::string& file, const NiftiBytes& header) {
             fmt::format("its qform is no rotation: the quaternion has length {:.6g}; expected at most 1",
                         quaternion));
     if (header.at<std::int16_t>(254) <= 0) return;  // sform_code
-    std::array<openvdb::Vec3d, 3> axis;
+    std::array<Vec3, 3> axis;
     for (int a = 0; a < 3; ++a)
         for (int row = 0; row < 3; ++row)
             axis[a][row] = number(280 + 16 * static_cast<std::size_t>(row) + 4 * static_cast<std::size_t>(a));
-    const double volume = std::abs(axis[0].cross(axis[1]).dot(axis[2]));
-    const double lengths = axis[0].length() * axis[1].length() * axis[2].length();
-    const bool sizes =
-        std::all_of(axis.begin(), axis.end(), [&](const openvdb::Vec3d& v) { return sane(v.length()); });
+    const double volume = std::abs(dot(cross(axis[0], axis[1]), axis[2]));
+    const double lengths = length(axis[0]) * length(axis[1]) * length(axis[2]);
+    const bool sizes = std::all_of(axis.begin(), axis.end(), [&](const Vec3& v) { return sane(length(v)); });
     if (!(volume > 1e-6 * lengths) || !sizes)
         throw InputError(
             file,

@@ -1,4 +1,6 @@
 // NRRD headers, as https://teem.sourceforge.net/nrrd/format.html has them, before NrrdIO sees them.
+#include "io/image/nrrd.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +10,9 @@
 #include <map>
 #include <set>
 
+#include "base/text.h"
+#include "io/image/check.h"
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -47,10 +50,10 @@ NrrdText nrrdText(const fs::path& path) {
         }
         const std::size_t colon = line.find(':');
         if (line[0] == '#' || colon == std::string::npos || line.compare(colon, 2, ":=") == 0) continue;
-        std::string name = lower(line.substr(0, colon));
+        std::string name = toLower(line.substr(0, colon));
         std::erase(name, ' ');
         result.field[name] = trimmed(line.substr(colon + 1));
-        list = name == "datafile" && lower(result.field[name]).starts_with("list");
+        list = name == "datafile" && toLower(result.field[name]).starts_with("list");
     }
     result.end = static_cast<std::int64_t>(at == std::string::npos ? text.size() : at + 1);
     return result;
@@ -98,7 +101,7 @@ std::optional<PlainData> checkNrrdData(const fs::path& path, const NrrdText& tex
         const auto found = text.field.find(key);
         return found == text.field.end() ? std::string() : found->second;
     };
-    const std::string data = get("datafile"), encoding = lower(get("encoding"));
+    const std::string data = get("datafile"), encoding = toLower(get("encoding"));
     if (encoding == "bzip2" || encoding == "bz2")  // NrrdIO as ITK has it lacks it
         throw InputError(name,
                          "'encoding' says " + encoding + "; expected raw, gzip, ascii or hex; convert it");
@@ -117,12 +120,41 @@ std::optional<PlainData> checkNrrdData(const fs::path& path, const NrrdText& tex
         checkPlain(file, begin, needed, promise);
         // byte skip -1: the voxels are what the file ends with.
         const auto held = static_cast<std::int64_t>(fs::file_size(file));
-        return PlainData{file, byteSkip < 0 ? held - needed : begin, lower(get("endian")) == "big"};
+        return PlainData{file, byteSkip < 0 ? held - needed : begin, toLower(get("endian")) == "big"};
     } else if (encoding == "gzip" || encoding == "gz") {  // lines are skipped before inflating, bytes after
         checkDeflated(file, skipped(file, start, lineSkip, 0), needed + std::max<std::int64_t>(byteSkip, 0),
                       promise);
     }
     return std::nullopt;
+}
+
+ValueType nrrdType(const std::string& file, const std::string& text) {
+    if (const auto type = valueTypeOf(text)) return *type;
+    // The long names: "signed short int", "unsigned long long".
+    static const std::map<std::string, ValueType> others = {{"signed short int", ValueType::int16},
+                                                            {"short int", ValueType::int16},
+                                                            {"unsigned short int", ValueType::uint16},
+                                                            {"longlong", ValueType::int64},
+                                                            {"long long", ValueType::int64},
+                                                            {"long long int", ValueType::int64},
+                                                            {"signed long long", ValueType::int64},
+                                                            {"signed long long int", ValueType::int64},
+                                                            {"unsigned long long", ValueType::uint64},
+                                                            {"unsigned long long int", ValueType::uint64},
+                                                            {"ulonglong", ValueType::uint64},
+                                                            {"int8_t", ValueType::int8},
+                                                            {"uint8_t", ValueType::uint8},
+                                                            {"int16_t", ValueType::int16},
+                                                            {"uint16_t", ValueType::uint16},
+                                                            {"int32_t", ValueType::int32},
+                                                            {"uint32_t", ValueType::uint32},
+                                                            {"int64_t", ValueType::int64},
+                                                            {"uint64_t", ValueType::uint64}};
+    const auto found = others.find(toLower(text));
+    if (found == others.end())
+        throw InputError(
+            file, fmt::format("'type' says '{}'; expected an integer or floating-point type", oneLine(text)));
+    return found->second;
 }
 
 }  // namespace
@@ -150,33 +182,7 @@ HeaderFacts checkNrrd(const fs::path& path) {
     if (static_cast<std::int64_t>(facts.size.size()) != dimension)
         throw InputError(name, fmt::format("'dimension' says {} but 'sizes' has {} numbers", dimension,
                                            facts.size.size()));
-    facts.storedType = valueTypeOf(std::string(need("type")));
-    if (!facts.storedType) {  // the long names: "signed short int", "unsigned long long"
-        static const std::map<std::string, ValueType> others = {{"signed short int", ValueType::int16},
-                                                                {"short int", ValueType::int16},
-                                                                {"unsigned short int", ValueType::uint16},
-                                                                {"longlong", ValueType::int64},
-                                                                {"long long", ValueType::int64},
-                                                                {"long long int", ValueType::int64},
-                                                                {"signed long long", ValueType::int64},
-                                                                {"signed long long int", ValueType::int64},
-                                                                {"unsigned long long", ValueType::uint64},
-                                                                {"unsigned long long int", ValueType::uint64},
-                                                                {"ulonglong", ValueType::uint64},
-                                                                {"int8_t", ValueType::int8},
-                                                                {"uint8_t", ValueType::uint8},
-                                                                {"int16_t", ValueType::int16},
-                                                                {"uint16_t", ValueType::uint16},
-                                                                {"int32_t", ValueType::int32},
-                                                                {"uint32_t", ValueType::uint32},
-                                                                {"int64_t", ValueType::int64},
-                                                                {"uint64_t", ValueType::uint64}};
-        const auto found = others.find(lower(need("type")));
-        if (found == others.end())
-            throw InputError(name, fmt::format("'type' says '{}'; expected an integer or floating-point type",
-                                               oneLine(need("type"))));
-        facts.storedType = found->second;
-    }
+    facts.storedType = nrrdType(name, need("type"));
     if (text.field.contains("spacings"))
         facts.badSpacing = badAmong(numbers(text.field.at("spacings")), true);
     if (text.field.contains("spacedirections")) checkSpaceDirections(name, text.field.at("spacedirections"));

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "io/image/source.h"
+#include "io/image/check.h"
+#include "io/image/open_source.h"
 
 namespace isowave {
 using namespace imageio;
@@ -103,7 +104,7 @@ struct ImageStream::State {
         const auto* values = std::get_if<std::span<const float>>(&slab.voxels);
         if (!values || slab.zero) return;
         NotFinite here;
-        here.look(values->data(), static_cast<std::int64_t>(values->size()), slab.z0 * sliceVoxels());
+        here.countIn(values->data(), static_cast<std::int64_t>(values->size()), slab.z0 * sliceVoxels());
         if (here.count == 0) return;
         const std::lock_guard lock(mutex);
         notFinite.add(here);

@@ -1,8 +1,8 @@
 // Images that are never whole in memory: slabs of slices, read as often as wanted, each forgotten afterwards.
 //
 //   ImageStream scan("scan.mha");                                   // 1024^3 uint8: 1 GB on disk
-//   const ImageStatistics values = statisticsOf(scan);              // one pass over the file
-//   const NodeCollection nodes = nodesFromImage(scan, {.iso = 0.5});  // another
+//   const ImageStatistics values = statisticsOf(scan);              // one pass (volume/image_statistics.h)
+//   const NodeCollection nodes = nodesFromImage(scan, {.iso = 0.5});  // another (volume/nodes_image.h)
 //
 // Memory: a few MB, plus what comes out. Voxels that do not lie in a file as they are (compressed, rescaled,
 // DICOM) are decoded once and kept, as int8, uint8, int16 or uint16 where that is what the file holds and as
@@ -18,8 +18,8 @@
 #include <variant>
 #include <vector>
 
-#include "isowave/progress.h"
 #include "isowave/image.h"
+#include "isowave/progress.h"
 
 namespace isowave {
 
@@ -65,18 +65,5 @@ class ImageStream {
     struct State;
     std::unique_ptr<State> state_;
 };
-
-// What an image holds.
-struct ImageStatistics {
-    float low = 0, high = 0;
-    // Values below which 1, 5, 25, 50, 75, 95, 99 % of the voxels lie (of every n-th voxel of large images).
-    std::vector<std::pair<int, float>> percentiles;
-    std::vector<float> distinct;  // ascending; empty when there are more than kMostDistinct
-    bool found = false;           // whether the value asked for is among the voxels
-    static constexpr std::size_t kMostDistinct = 64;
-};
-// One pass. wanted: the value to be looked for.
-ImageStatistics statisticsOf(ImageStream& stream, std::optional<float> wanted = {},
-                             const Progress& progress = {});
 
 }  // namespace isowave

@@ -1,15 +1,15 @@
-// TIFF and PNG files before libtiff and libpng see them: whether all that their tables point to lies in the
-// file.
+// TIFF files before ITK's libtiff sees them: whether all that their tables point to lies in the file.
+#include "io/image/tiff.h"
+
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <vector>
 
 #include "isowave/error.h"
-#include "io/image/header.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -39,19 +39,6 @@ class Bytes {
         std::uint64_t value = 0;
         for (unsigned i = 0; i < bytes; ++i) value = value << 8 | raw[bigEndian ? i : bytes - 1 - i];
         return value;
-    }
-    // CRC-32 of `count` bytes from `at` on. REQUIRES: they are there.
-    std::uint64_t crc(std::uint64_t at, std::uint64_t count) {
-        std::vector<unsigned char> block(std::min<std::uint64_t>(count, 1 << 16));
-        file_.seekg(static_cast<std::streamoff>(at));
-        uLong sum = 0;
-        for (std::uint64_t left = count; left > 0;) {
-            const auto part = std::min<std::uint64_t>(left, block.size());
-            file_.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(part));
-            sum = crc32(sum, block.data(), static_cast<uInt>(part));
-            left -= part;
-        }
-        return sum;
     }
     // Throws InputError unless `count` bytes from `at` on are there.
     void require(std::uint64_t at, std::uint64_t count) const {
@@ -136,56 +123,6 @@ void checkTiff(const fs::path& path) {
         at = checkDirectory(file, layout, at);
     }
     if (seen.empty()) throw InputError(path.string(), "holds no image: its first directory is missing");
-}
-
-namespace {
-
-constexpr std::uint64_t kPngMagic = 0x89504E470D0A1A0AULL;
-constexpr std::uint64_t kIhdr = 0x49484452, kPlte = 0x504C5445, kIdat = 0x49444154, kIend = 0x49454E44;
-
-// Width and height are not checked here: that is what ITK reports, and the caller weighs it.
-void checkPngHeader(const fs::path& path, Bytes& file, std::uint64_t at, std::uint64_t length) {
-    const auto depth = length == 13 ? file.number(at + 8, 1) : 0,
-               colour = length == 13 ? file.number(at + 9, 1) : 0;
-    const bool powers = depth == 8 || depth == 16;
-    const bool known = colour == 0   ? powers || depth == 1 || depth == 2 || depth == 4
-                       : colour == 3 ? depth == 8 || depth == 1 || depth == 2 || depth == 4
-                                     : powers && (colour == 2 || colour == 4 || colour == 6);
-    if (!known || file.number(at + 10, 2) != 0 || file.number(at + 12, 1) > 1 || file.number(at, 4) == 0 ||
-        file.number(at + 4, 4) == 0)
-        throw InputError(path.string(), "its PNG header is damaged");
-}
-
-}  // namespace
-
-// Chunks: length, name, data, CRC; the first is IHDR, the last IEND. ITK lets libpng abort the program over a
-// wrong one, so all are checked here.
-void checkPng(const fs::path& path) {
-    Bytes file(path);
-    file.bigEndian = true;
-    if (file.number(0, 8) != kPngMagic) throw InputError(path.string(), "is not a PNG file");
-    bool palette = false, pixels = false;
-    std::uint64_t colour = 0;
-    for (std::uint64_t at = 8, name = 0; name != kIend;) {
-        const std::uint64_t length = file.number(at, 4);
-        name = file.number(at + 4, 4);
-        file.require(at, length + 12);
-        if (file.crc(at + 4, length + 4) != file.number(at + 8 + length, 4))
-            throw InputError(path.string(),
-                             fmt::format("the checksum of its chunk at byte {} is wrong; it is damaged", at));
-        if ((at == 8) != (name == kIhdr))
-            throw InputError(path.string(), "its PNG header is not where it should be");
-        if (name == kIhdr) {
-            checkPngHeader(path, file, at + 8, length);
-            colour = file.number(at + 17, 1);
-        }
-        palette = palette || name == kPlte;
-        if (name == kIdat && colour == 3 && !palette)
-            throw InputError(path.string(), "its palette is missing");
-        pixels = pixels || name == kIdat;
-        at += length + 12;
-    }
-    if (!pixels) throw InputError(path.string(), "holds no pixels");
 }
 
 }  // namespace isowave::imageio

@@ -1,5 +1,6 @@
 // The promises of polygonize/clip.h, and what an open image border becomes.
 #include "polygonize/clip.h"
+#include "volume/linear_transform.h"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +68,8 @@ TEST(Clip, AnOpenBorderLeavesTheCapOut) {
     const auto closed = polygonize(fitDistance(*distanceFromImage(image, {.iso = 0}, 4)));
     EXPECT_TRUE(topologyOf(closed).closed());
     const auto field = fitDistance(*distanceFromImage(image, {.iso = 0, .openBorder = true}, 4));
-    const auto mesh = clipToBox(polygonize(field), image.indexToWorld.inverse(), Vec3d(0), Vec3d(19, 23, 23));
+    const auto mesh =
+        clipToBox(polygonize(field), matrixOf(image.indexToWorld).inverse(), Vec3d(0), Vec3d(19, 23, 23));
     const MeshTopology topology = topologyOf(mesh);
     EXPECT_FALSE(topology.closed());
     EXPECT_TRUE(topology.manifold());
@@ -83,13 +85,14 @@ TEST(Clip, MakesNoTrianglesOfNoWidth) {
     Image image;
     image.size = {20, 24, 24};
     // Turned and moved, so that world coordinates of lattice planes are rounded.
-    image.indexToWorld = Mat4d(.3, .4, 0., 0., -.4, .3, 0., 0., 0., 0., .7, 0., 113.7, -41.3, 17.9, 1.);
+    image.indexToWorld = {{{{.3, .4, 0}, {-.4, .3, 0}, {0, 0, .7}}}, {113.7, -41.3, 17.9}};
     for (int z = 0; z < 24; ++z)
         for (int y = 0; y < 24; ++y)
             for (int x = 0; x < 20; ++x)
                 image.values.push_back(float(8 - std::hypot(y - 11.3, z - 12.1) + std::sin(0.7 * x)));
     const auto field = fitDistance(*distanceFromImage(image, {.iso = 0, .openBorder = true}, 4));
-    const auto mesh = clipToBox(polygonize(field), image.indexToWorld.inverse(), Vec3d(0), Vec3d(19, 23, 23));
+    const auto mesh =
+        clipToBox(polygonize(field), matrixOf(image.indexToWorld).inverse(), Vec3d(0), Vec3d(19, 23, 23));
     ASSERT_GT(mesh.triangles.size(), 1000u);
     double shortest = 1e9;
     for (const Triangle& t : mesh.triangles)

@@ -22,8 +22,8 @@ BSplineField fieldOf(const std::function<double(const Vec3d&)>& distance, const 
 
 double cylinder(double x, double y, double r) { return std::hypot(x, y) - r; }
 
-// A plate 100 x 52 x 7.3 with 8 through-holes of radius 1.2 to 6.1, tilted about z by 0.2, and 4 balls of radius
-// 1.1 to 3.8 in a row beside it.
+// A plate 100 x 52 x 7.3 with 8 through-holes of radius 1.2 to 6.1, tilted about z by 0.2, and 4 balls of
+// radius 1.1 to 3.8 in a row beside it.
 constexpr double kHoles[] = {1.2, 1.9, 2.6, 3.3, 4.0, 4.7, 5.4, 6.1};
 constexpr double kBalls[] = {1.1, 2.0, 2.9, 3.8};
 
@@ -109,7 +109,8 @@ TEST(Features, AHollowBallHasACavityAndItsWall) {
     EXPECT_TRUE(features.handles.empty());
 }
 
-// What the levels do to the plate, by the truth: a hole is open while its axis in the middle of the plate is outside.
+// What the levels do to the plate, by the truth: a hole is open while its axis in the middle of the plate is
+// outside.
 TEST(Features, SurvivalIsThatOfTheHolesAndBallsThemselves) {
     const BSplineField finest = fieldOf(plate, kPlateBox);
     const SolidFeatures features = featuresOf(polygonize(finest), {.spacing = 1, .reach = 8});
@@ -128,7 +129,8 @@ TEST(Features, SurvivalIsThatOfTheHolesAndBallsThemselves) {
         for (int i = 0; i < 8; ++i) open += outside(-36.2 + 24.1 * (i % 4), -11.4 + 23.7 * (i / 4), 0.13);
         for (int i = 0; i < 4; ++i) balls += !outside(-30.3 + 20.6 * i, 0, 14.53);
         const SolidSurvival survival = survivalOf(features, level, 0);
-        // Beyond level 2 the level's lattice is wider than the smaller holes: it depends on where on its axis one asks.
+        // Beyond level 2 the level's lattice is wider than the smaller holes: it depends on where on its axis
+        // one asks.
         EXPECT_LE(std::abs(survival.handles.survived - open), step <= 6 ? 1 : 3)
             << step;  // a core lies up to half a voxel beside the axis
         EXPECT_LE(std::abs(survival.parts.survived - balls - 1), 1) << step;

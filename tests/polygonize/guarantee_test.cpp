@@ -1,5 +1,5 @@
-// The whole way from signs to a file: closed, oriented, 2-manifold, without degenerate triangles, before and after
-// the rounding to float32 and the merging by position that STL does.
+// The whole way from signs to a file: closed, oriented, 2-manifold, without degenerate triangles, before and
+// after the rounding to float32 and the merging by position that STL does.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "polygonize/fields.h"
+#include "io/mesh/equal_points.h"
 #include "io/mesh/write.h"
+#include "polygonize/fields.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 
@@ -75,8 +76,8 @@ TEST(Guarantee, HoldsForAllPairsOfFaceNeighbouringCells) {
 }
 
 TEST(Guarantee, HoldsForRandomBlocksOfEveryDensity) {
-    // Sparse and dense signs make other cells frequent than even ones do: with 10 % inside most are lone corners,
-    // many of them face to face across an ambiguous face.
+    // Sparse and dense signs make other cells frequent than even ones do: with 10 % inside most are lone
+    // corners, many of them face to face across an ambiguous face.
     for (const unsigned percent : {10u, 30u, 50u, 70u, 90u}) {
         constexpr int n = 40;
         std::mt19937 random(percent);

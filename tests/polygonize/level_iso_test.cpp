@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "polygonize/fields.h"
+#include "polygonize/knot_insertion.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/specks.h"
 #include "polygonize/topology.h"
@@ -141,7 +142,7 @@ TEST(ThinParts, AreKeptAtTheLeastIsoValue) {
     const double limit = kIsoLimit * finest.K;
     for (const int step : {3, 6, 9}) {
         const BSplineField level = stepOf(finest, step);
-        const std::vector<double> values = thin.valuesOn(refineField(level), level.transform().voxelSize());
+        const std::vector<double> values = thin.valuesOn(insertKnots(level), level.transform().voxelSize());
         const double iso = isoThatKeeps(values, ThinParts::kShare, limit);
         EXPECT_GT(values.size(), 300u) << step;
         EXPECT_GE(shareInside(values, iso), ThinParts::kShare) << step;

@@ -27,7 +27,8 @@ std::vector<Interval> intervalsOf(const LatticeFunction& f, float at, float last
     return result;
 }
 
-// The textbook: every cell in the order of (value, dimension), its boundary a column, columns reduced from the left.
+// The textbook: every cell in the order of (value, dimension), its boundary a column, columns reduced from
+// the left.
 std::vector<Interval> textbook(const LatticeFunction& f, float at) {
     struct Cell {
         std::array<int, 3> at;  // doubled

@@ -13,6 +13,7 @@
 
 #include "isowave/error.h"
 #include "polygonize/fields.h"
+#include "polygonize/knot_insertion.h"
 #include "polygonize/topology.h"
 #include "zoo/zoo.h"
 
@@ -379,7 +380,7 @@ TEST(RefineField, IsTheSameFunction) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> coordinate(-12, 20);
     for (const BSplineField& field : fields) {
-        const BSplineField fine = refineField(field);
+        const BSplineField fine = insertKnots(field);
         EXPECT_EQ(fine.K, field.K);
         for (int i = 0; i < 5000; ++i) {
             const Vec3d x(coordinate(random), coordinate(random), coordinate(random));
@@ -394,7 +395,7 @@ TEST(RefineField, IsTheSameFunction) {
 
 TEST(RefineField, KeepsKOutsideIAndTheShapesTopologyAndSigns) {
     const BSplineField field = fieldFromDistance(20, sphere(13));
-    const BSplineField fine = refineField(field);
+    const BSplineField fine = insertKnots(field);
     EXPECT_TRUE(fine.shape->tree().hasSameTopology(fine.controlPoints->tree()));
     for (auto voxel = fine.controlPoints->cbeginValueOff(); voxel; ++voxel)
         ASSERT_EQ(std::abs(*voxel), static_cast<float>(field.K));

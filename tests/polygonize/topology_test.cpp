@@ -1,4 +1,5 @@
 #include "polygonize/topology.h"
+#include "io/mesh/equal_points.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -9,7 +9,8 @@
 namespace isowave {
 namespace {
 
-// To the centre of a triangle: a distance that no box bounds from above, so that every triangle may be nearest.
+// To the centre of a triangle: a distance that no box bounds from above, so that every triangle may be
+// nearest.
 double squaredToCentre(const TriangleMesh& mesh, std::uint32_t t, const Point& p) {
     double sum = 0;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -1,18 +1,19 @@
 // What Collapse and BudgetChooser promise.
 #include "simplify/collapse.h"
+#include "io/mesh/equal_points.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <atomic>
 
-#include "isowave/error.h"
-#include "simplify/shapes.h"
-#include "simplify/budget.h"
+#include "io/mesh/read.h"
 #include "io/mesh/write.h"
+#include "isowave/error.h"
 #include "polygonize/polygonize.h"
+#include "simplify/budget_chooser.h"
+#include "simplify/shapes.h"
 #include "temp_folder.h"
-#include "volume/mesh_repair.h"
 #include "wavelets/pyramid.h"
 #include "zoo/mesh_check.h"
 #include "zoo/zoo.h"
@@ -49,8 +50,8 @@ TEST(Collapse, ComesDownToTheCountOnASphereAndStaysNearIt) {
         EXPECT_LE(few.triangles.size(), count);
         EXPECT_GE(few.triangles.size(), count - 2);
         EXPECT_EQ(topologyOf(few).genus, 0);
-        // Equilateral triangles of that count have the side s = sqrt(4 area / (sqrt(3) count)); the chord of a
-        // sphere through corners s/sqrt(3) from its centre sags s^2 / (6 r).
+        // Equilateral triangles of that count have the side s = sqrt(4 area / (sqrt(3) count)); the chord of
+        // a sphere through corners s/sqrt(3) from its centre sags s^2 / (6 r).
         const double sag = 4 * 4 * M_PI * 100 / (std::sqrt(3.0) * double(count)) / 60;
         EXPECT_LT(compareMeshes(mesh, few).max, 1.5 * sag) << count;
     }
@@ -100,17 +101,18 @@ TEST(Collapse, HoldsTheDistanceThatItIsGiven) {
     }
 }
 
-// Not that rms or volume get better: on this plate the rms was 0.062 with a limit of 0.8 times the distance, 0.050 without.
+// Not that rms or volume get better: on this plate the rms was 0.062 with a limit of 0.8 times the distance,
+// 0.050 without.
 TEST(Collapse, ALimitOfWhatIsAlikeChangesTheOrderAndNotTheGuarantees) {
     const TriangleMesh mesh = polygonize(zoo::distanceField(zoo::cadSolids().front()));
     const DistanceTarget original(mesh);
     const auto wanted = static_cast<std::int64_t>(mesh.triangles.size()) / 20;
     std::vector<TriangleMesh> results;
-    for (const double alike : {0.0, 0.5}) {
-        Collapse collapse(mesh, mesh, original, {.alike = alike});
+    for (const double errorFloor : {0.0, 0.5}) {
+        Collapse collapse(mesh, mesh, original, {.errorFloor = errorFloor});
         collapse.reduce(wanted);
         results.push_back(collapse.mesh());
-        expectSound(results.back(), std::to_string(alike));
+        expectSound(results.back(), std::to_string(errorFloor));
         EXPECT_LE(collapse.triangles(), wanted);
         EXPECT_EQ(topologyOf(results.back()).genus, topologyOf(mesh).genus);
     }
@@ -145,7 +147,7 @@ TEST(Collapse, DoesNotDependOnThreads) {
 
 TEST(Thin, KeepsTopologyAndStaysNear) {
     const TriangleMesh mesh = polygonize(zoo::distanceField(zoo::cadSolids().back()));
-    const TriangleMesh few = thin(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / 4);
+    const TriangleMesh few = decimate(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / 4);
     expectSound(few, "thinned");
     EXPECT_LE(few.triangles.size(), mesh.triangles.size() / 4);
     EXPECT_EQ(topologyOf(few).genus, topologyOf(mesh).genus);

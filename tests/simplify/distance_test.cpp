@@ -4,8 +4,8 @@
 #include <atomic>
 
 #include "isowave/error.h"
+#include "simplify/distance.h"
 #include "simplify/shapes.h"
-#include "simplify/measure.h"
 
 namespace isowave {
 namespace {

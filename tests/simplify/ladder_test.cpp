@@ -4,14 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "simplify/measure.h"
+#include "io/image/itk.h"
+#include "io/mesh/read.h"
+#include "isowave/image.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
+#include "simplify/distance.h"
 #include "temp_folder.h"
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "isowave/image.h"
-#include "io/image/itk.h"
 #include "volume/mesh_repair.h"
 #include "wavelets/pyramid.h"
 #include "zoo/mesh_check.h"
@@ -153,7 +154,7 @@ TEST(Ladder, VerticesOfLevelZeroLieOnTheTrueSurface) {
         }
 }
 
-// ---- world coordinates ----------------------------------------------------------------------------------
+// ---- world coordinates
 
 TEST(Ladder, AnObliqueAnisotropicCroppedImageIsMeshedWhereItkPutsItsVoxels) {
     using Volume = itk::Image<short, 3>;

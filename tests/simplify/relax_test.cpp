@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "simplify/measure.h"
 #include "polygonize/polygonize.h"
+#include "simplify/self_intersections.h"
 #include "zoo/zoo.h"
 
 namespace isowave {

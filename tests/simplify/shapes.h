@@ -1,4 +1,4 @@
-// Small meshes whose measures are known, for the tests of simplify/measure.h.
+// Small meshes whose measures are known, for the tests of simplify/distance.h.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Measures of solids whose measures are known, and meshes that are no solids.
 #include <gtest/gtest.h>
 
-#include "simplify/shapes.h"
-#include "simplify/measure.h"
 #include "polygonize/topology.h"
+#include "simplify/distance.h"
+#include "simplify/shapes.h"
 
 namespace isowave {
 namespace {

@@ -1,5 +1,6 @@
 // The promises of volume/fit.h, nodes and distances.
 #include "volume/fit.h"
+#include "volume/linear_transform.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -17,7 +18,7 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::Vec3d;
 
-// ---- signs ----------------------------------------------------------------------------------------------
+// ---- signs
 
 TEST(Fit, SignsAgreeWithTheInputAtEveryLatticePointOfTheWholeZoo) {
     for (const auto& solid : zoo::allSolids()) {
@@ -143,7 +144,7 @@ TEST(Fit, FieldsAreTheSameForAnyNumberOfThreads) {
     }
 }
 
-// ---- accuracy -------------------------------------------------------------------------------------------
+// ---- accuracy
 
 // Rms distance, in voxels, of the field's zero set to the true surface: the true distance at the roots along
 // lattice edges, found by bisection on the spline itself.
@@ -230,7 +231,7 @@ TEST(FitDistance, IsFarCloserThanTheBinaryFit) {
     EXPECT_GT(rmsOfZeroSet(zoo::binaryField(solid), distance), 0.1);  // seen 0.19
 }
 
-// ---- images ---------------------------------------------------------------------------------------------
+// ---- images
 
 // A grey image whose iso surface is a known one: values fall linearly across it.
 Image greyImage(const std::function<double(const Vec3d&)>& distance, int size, double iso, double slope) {
@@ -291,13 +292,11 @@ TEST(DistanceFromImage, CapsASolidThatTouchesTheBorderHalfAVoxelOutside) {
 
 TEST(DistanceFromImage, KeepsTheImagesTransform) {
     Image image = greyImage([](const Vec3d& p) { return (p - Vec3d(8)).length() - 4; }, 16, 0, 1);
-    image.indexToWorld =
-        openvdb::Mat4d(0.5, 0.1, 0., 0., -0.1, 0.6, 0., 0., 0., 0.2, 1.5, 0., -100., 30., 7., 1.);
+    image.indexToWorld = {{{{0.5, 0.1, 0}, {-0.1, 0.6, 0}, {0, 0.2, 1.5}}}, {-100, 30, 7}};
     const auto field = fitDistance(*distanceFromImage(image, {.iso = 0}, 4));
     const auto shift = Coord::round(field.transform().worldToIndex(Vec3d(-100, 30, 7)));
     const Vec3d voxel(3, 5, 7);
-    const auto expected =
-        openvdb::math::Transform::createLinearTransform(image.indexToWorld)->indexToWorld(voxel);
+    const auto expected = linearTransform(image.indexToWorld, "image")->indexToWorld(voxel);
     EXPECT_LT((field.transform().indexToWorld(voxel + shift.asVec3d()) - expected).length(), 1e-12);
 }
 

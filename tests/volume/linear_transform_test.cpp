@@ -64,7 +64,7 @@ TEST(LinearTransform, IsWhatEveryInputIsGivenAs) {
     Image image;
     image.size = {4, 4, 4};
     image.values.assign(64, 1.0f);
-    image.indexToWorld = straight(1e-5);
+    image.indexToWorld.axis = {{{1e-5, 0, 0}, {0, 1e-5, 0}, {0, 0, 1e-5}}};
     EXPECT_THAT([&] { distanceFromImage(image, {.iso = 0.5}, 4); }, refusesOneLine("image"));
     EXPECT_THAT([&] { nodesFromImage(image, {.iso = 0.5}); }, refusesOneLine("image"));
     EXPECT_THAT([&] { nodesFromLabel(image, 1); }, refusesOneLine("image"));

@@ -14,7 +14,8 @@ using openvdb::FloatTree;
 
 constexpr int kLower = 128, kUpper = 4096;
 
-// Leaves, and tiles of every size, some inside, on both sides of the origin. What is in a leaf's slot has one value.
+// Leaves, and tiles of every size, some inside, on both sides of the origin. What is in a leaf's slot has one
+// value.
 BoolTree randomShape(std::mt19937& rng) {
     BoolTree shape(false);
     const auto at = [&](int reach) {

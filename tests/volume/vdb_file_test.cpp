@@ -46,7 +46,8 @@ std::string bytesOf(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Removed first: ext4 takes a file that is cut to nothing and written again for one worth flushing to the disk.
+// Removed first: ext4 takes a file that is cut to nothing and written again for one worth flushing to the
+// disk.
 void put(const fs::path& path, const std::string& bytes) {
     fs::remove(path);
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
@@ -231,7 +232,8 @@ TEST_F(VdbFile, HoldsATreeForEachGridThatSharesIt) {
     EXPECT_EQ(readVdb(folder / "a.vdb").grids.size(), 2u);
 }
 
-// The file was written when Blosc was still used: isowave field of a 24^3 image of this ball with a hole, voxels of 1 mm.
+// The file was written when Blosc was still used: isowave field of a 24^3 image of this ball with a hole,
+// voxels of 1 mm.
 TEST_F(VdbFile, ReadsFilesOfItsOwnThatHoldBlosc) {
     const auto inside = [](const openvdb::Coord& c) {
         const double x = c.x() - 11.5, y = c.y() - 11.5, z = c.z() - 11.5;
@@ -296,7 +298,7 @@ TEST_F(VdbFile, ReadsGridsSavedInHalfPrecision) {
 
 TEST_F(VdbFile, RefusesWhatIsNotAVdb) {
     EXPECT_THAT(refusal(folder / "missing.vdb"), HasSubstr("no such file"));
-    EXPECT_THAT(refusal(folder), HasSubstr("is not a file"));
+    EXPECT_THAT(refusal(folder), HasSubstr("is a folder; expected"));
     put(folder / "empty.vdb", "");
     EXPECT_THAT(refusal(folder / "empty.vdb"), HasSubstr("is empty"));
     put(folder / "text.vdb", std::string(200, 'x'));

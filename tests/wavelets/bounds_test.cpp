@@ -10,8 +10,8 @@
 
 #include "volume/distance.h"
 #include "volume/fit.h"
-#include "wavelets/interval/interval.h"
 #include "wavelets/interval/batch.h"
+#include "wavelets/interval/interval.h"
 #include "wavelets/interval/matrices.h"
 #include "zoo/zoo.h"
 
@@ -23,7 +23,7 @@ using openvdb::CoordBBox;
 
 constexpr double kEverything = std::numeric_limits<double>::infinity();
 
-// ---- one interval ---------------------------------------------------------------------------------------
+// ---- one interval
 
 // Sums of absolute values along row i of synthesisMap(n), over c and over d.
 struct Gains {
@@ -101,7 +101,7 @@ TEST(Bounds, DetailsOfAnIntervalWithoutCoarsePartAreAllThereIsToIt) {
     }
 }
 
-// ---- fields ---------------------------------------------------------------------------------------------
+// ---- fields
 
 double largestDifference(const BSplineField& a, const BSplineField& b) {
     const auto other = b.controlPoints->getConstAccessor();
@@ -217,7 +217,7 @@ TEST(Bounds, WhatIsDroppedIsCountedAndAPyramidThatSharesTheDetailsKeepsThem) {
     EXPECT_LT(largestDifference(field, whole.field(0)), 1e-5);
 }
 
-// ---- P P .. P c -----------------------------------------------------------------------------------------
+// ---- P P .. P c
 
 // A box of control points, and which of them owe nothing to the end of an interval.
 struct Dense {

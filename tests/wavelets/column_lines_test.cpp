@@ -1,4 +1,5 @@
-// The promises of wavelets/columns.h and of what a column is made of, line_bits.h, line_plan.h and line_values.h: beside twins that go point by point.
+// The promises of wavelets/columns.h and of what a column is made of, line_bits.h, line_plan.h and
+// line_values.h: beside twins that go point by point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "vector_widths.h"
+#include "tests/wavelets/interval/vector_widths.h"
 #include "wavelets/columns.h"
 #include "wavelets/interval/interval.h"
 #include "wavelets/line_plan.h"
@@ -16,7 +17,7 @@
 namespace isowave::wavelets {
 namespace {
 
-// ---- bits -----------------------------------------------------------------------------------------------
+// ---- bits
 
 bool bitOf(const LeafWords& words, int offset) { return words[offset >> 6] >> (offset & 63) & 1; }
 bool bitOf(const LeafLines& lines, int line, int position) {
@@ -70,7 +71,7 @@ TEST(LineBits, EvenPositionsOfTwoLeavesMakeOne) {
     }
 }
 
-// ---- intervals ------------------------------------------------------------------------------------------
+// ---- intervals
 
 class LinePlans : public testing::TestWithParam<Vectors> {};
 INSTANTIATE_TEST_SUITE_P(Widths, LinePlans, testing::ValuesIn(vectorWidths()), vectorsName);
@@ -95,7 +96,8 @@ std::vector<Run> runsOf(const std::vector<bool>& known) {
     return runs;
 }
 
-// Runs of four or more, anywhere but in the first and the last leaf; ends and gaps of every kind, leaves' ends among them.
+// Runs of four or more, anywhere but in the first and the last leaf; ends and gaps of every kind, leaves'
+// ends among them.
 Known randomRuns(int leaves, std::mt19937& rng) {
     Known known(kLinesPerLeaf, std::vector<bool>(leaves * kLeafDim));
     const int end = (leaves - 1) * kLeafDim;
@@ -153,7 +155,7 @@ TEST_P(LinePlans, AShortRunIsFoundWhereverItLies) {
     }
 }
 
-// ---- values ---------------------------------------------------------------------------------------------
+// ---- values
 
 class ValuesOfLines : public testing::TestWithParam<Vectors> {};
 INSTANTIATE_TEST_SUITE_P(Widths, ValuesOfLines, testing::ValuesIn(vectorWidths()), vectorsName);
@@ -189,7 +191,7 @@ TEST_P(ValuesOfLines, ALeafsValuesLieAlongTheLinesAndComeBackWhereTheyAreKnown) 
         }
 }
 
-// ---- columns --------------------------------------------------------------------------------------------
+// ---- columns
 
 TEST(ColumnsOfATree, HoldEveryLeafOnceAndEndWhereFourAreMissing) {
     std::mt19937 rng(4);

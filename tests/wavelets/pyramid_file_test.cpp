@@ -115,8 +115,8 @@ TEST(PyramidFile, ReadFromAStepOnItGivesThatStepToTheBitAndReadsLess) {
         }
         before = bytes;
     }
-    // Step 0: everything. Step 6, a quarter of the resolution: seen 80 % of it; grids as small as this one are mostly
-    // OpenVDB's node masks, of which every step has the same.
+    // Step 0: everything. Step 6, a quarter of the resolution: seen 80 % of it; grids as small as this one
+    // are mostly OpenVDB's node masks, of which every step has the same.
     std::int64_t all = 0, some = 0;
     readPyramid(folder / "a.vdb", 0, &all);
     readPyramid(folder / "a.vdb", 6, &some);

@@ -83,7 +83,8 @@ TEST(Pyramid, EverySolidEndsAtOneNode) {
 }
 
 TEST(Pyramid, ASmallSolidEndsAtOneNodeWhereverItLies) {
-    // A run of 5 control points at 6 .. 10 needs four levels before there is one less: 2 .. 6, 0 .. 4, -1 .. 3, -1 .. 2.
+    // A run of 5 control points at 6 .. 10 needs four levels before there is one less: 2 .. 6, 0 .. 4, -1 ..
+    // 3, -1 .. 2.
     for (const int size : {1, 2, 3})
         for (int at = 0; at < 40; ++at) {
             const openvdb::Coord low(at, (at * 7) % 40, (at * 13) % 40);
@@ -261,7 +262,7 @@ TEST(Pyramid, RefusesAShapeThatKnowsPointsWhichTheFieldHasNot) {
             InputError);
 }
 
-// ---- the oracle -----------------------------------------------------------------------------------------
+// ---- the oracle
 
 BSplineField fieldFrom(const nlohmann::json& points, double K) {
     BSplineField field;

@@ -1,4 +1,5 @@
-// The promises of direction.h on thousands of small random masks: whatever the shape, the axes and their order.
+// The promises of direction.h on thousands of small random masks: whatever the shape, the axes and their
+// order.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -16,7 +17,7 @@ namespace {
 using openvdb::Coord;
 using openvdb::CoordBBox;
 
-// ---- random fields --------------------------------------------------------------------------------------
+// ---- random fields
 
 // The same numbers on every machine (the standard's distributions are not).
 class Random {
@@ -35,9 +36,10 @@ class Random {
     std::mt19937 engine_;
 };
 
-// kMasks random masks in one box: a tree of OpenVDB costs as much as a hundred of them. They lie a few lattice points
-// apart or many, so that intervals of neighbours are joined at one step or another. Noise of any density, or boxes put
-// together and taken away; half of them one voxel thick along a random axis, which are solids of the plane.
+// kMasks random masks in one box: a tree of OpenVDB costs as much as a hundred of them. They lie a few
+// lattice points apart or many, so that intervals of neighbours are joined at one step or another. Noise of
+// any density, or boxes put together and taken away; half of them one voxel thick along a random axis, which
+// are solids of the plane.
 constexpr int kPerAxis = 5, kPitch = 22, kMasks = kPerAxis * kPerAxis * kPerAxis;
 
 class Masks {
@@ -83,7 +85,8 @@ class Masks {
     std::vector<char> inside_;
 };
 
-// What the fit makes of the masks; every second time with control points that no fit would give, any in [-K, K).
+// What the fit makes of the masks; every second time with control points that no fit would give, any in [-K,
+// K).
 BSplineField randomField(Random& random) {
     BSplineField field = fitBinary(Masks(random).nodes(), {.passes = random.between(0, 3)});
     if (random.oneIn(2))
@@ -114,7 +117,7 @@ void forRandomMasks(int count, const Check& check) {
     }
 }
 
-// ---- what is compared -----------------------------------------------------------------------------------
+// ---- what is compared
 
 struct Taken {
     std::vector<Shape::Ptr> shapes;  // of the finer fields
@@ -172,7 +175,7 @@ int shortestRun(const openvdb::FloatGrid& grid) {
     return shortest;
 }
 
-// ---- the promises ---------------------------------------------------------------------------------------
+// ---- the promises
 
 TEST(RandomShapes, ComeBackWhateverTheOrderOfTheAxes) {
     forRandomMasks(3000, [&](const BSplineField& field, const std::vector<int>& axes, Random&) {

@@ -7,11 +7,11 @@
 #include "wavelets/interval/blocks.h"
 #include "wavelets/interval/kernels.h"
 
-// What `objdump -d` shows (g++ 12 -O3, eight lanes an instruction). applyShort's inner loop: 4 vmulpd that take their
-// second operand from memory, 4 vaddpd, 4 vbroadcastsd, two instructions of loop; all four sums in registers. solveBanded's:
-// unrolled, the last five rows kept in registers, a row of eight lanes in 6 vmulpd (most broadcast their factor from
-// memory) and 5 vsubpd. No vfmadd, no call but the one for the tables. Four and two lanes an instruction: the same twice
-// and four times.
+// What `objdump -d` shows (g++ 12 -O3, eight lanes an instruction). applyShort's inner loop: 4 vmulpd that
+// take their second operand from memory, 4 vaddpd, 4 vbroadcastsd, two instructions of loop; all four sums in
+// registers. solveBanded's: unrolled, the last five rows kept in registers, a row of eight lanes in 6 vmulpd
+// (most broadcast their factor from memory) and 5 vsubpd. No vfmadd, no call but the one for the tables. Four
+// and two lanes an instruction: the same twice and four times.
 
 namespace isowave::wavelets {
 namespace {

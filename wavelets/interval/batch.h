@@ -1,5 +1,5 @@
-// Several intervals of one length at a time, one a lane: what one interval does is a chain of dependent operations, or a
-// matrix that is read for a few values; side by side they fill the machine's vectors.
+// Several intervals of one length at a time, one per SIMD lane. A single interval is a chain of dependent
+// operations, or a matrix that is read for a few values; eight side by side fill the machine's vectors.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,19 @@
 
 namespace isowave::wavelets {
 
-// So many intervals at a time.
+// Intervals at a time.
 inline constexpr int kLanes = 8;
-// So many values behind the last of each line must be there to be read; they are written as they are. (One thread: no
-// other may write them meanwhile.)
+// Values behind the last of each line that must be readable. They are written back unchanged, so no other
+// thread may write them meanwhile.
 inline constexpr int kSlack = kLanes - 1;
 
-// Intervals of n coarse intervals, `lanes` of them. Each pointer is to a line, whose values lie one behind the other:
+// Intervals of n coarse intervals, `lanes` of them. Each pointer is to a line, whose values lie one behind
+// the other:
 //   fine     f_0 .. f_(2n+2)       coarse   c_0 .. c_(n+2)       detail   d_0 .. d_(n-1)
 // What is written overlaps nothing that is read.
 struct AnalysisBatch {
     int n = 0, lanes = 0;
-    const float* fine
-        [kLanes];  // beginning with the accessory value before f_0 and ending with the one behind f_(2n+2)
+    const float* fine[kLanes];  // from the accessory value before f_0 to the one behind f_(2n+2)
     float *coarse[kLanes], *detail[kLanes];
 };
 struct SynthesisBatch {
@@ -41,9 +41,9 @@ class BatchTransform {
 
     void analyse(const AnalysisBatch& batch);
     void synthesise(const SynthesisBatch& batch);
-    // How far each coefficient moves at most, either way -> how far each fine control point does: the sum over the
-    // absolute values of the map of synthesise() and of the coefficients. Attained, for one control point at a time.
-    // Accessory values do not move.
+    // How far each coefficient moves at most, either way -> how far each fine control point does: the sum
+    // over the absolute values of the map of synthesise() and of the coefficients. Attained, for one control
+    // point at a time. Accessory values do not move.
     void gain(const SynthesisBatch& batch);
 
   private:

@@ -1,7 +1,9 @@
-// Blocks of 8 x 8 values, transposed in registers: between lines, which hold their values one behind the other, and lanes or
-// leaves, where neighbours belong to different lines. Moving 64 values takes 8 loads, 24 shuffles and 8 stores.
+// Blocks of 8 x 8 values, transposed in registers: between lines, which hold their values one behind the
+// other, and lanes or leaves, where neighbours belong to different lines. Moving 64 values takes 8 loads, 24
+// shuffles and 8 stores.
 //
-// __builtin_shufflevector: g++ 12 or clang. kWide: the function that this is inlined into is compiled for vectors of eight floats. Without, plain loops.
+// __builtin_shufflevector: g++ 12 or clang. kWide: the function that this is inlined into is compiled for
+// vectors of eight floats. Without, plain loops.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +40,8 @@ ISOWAVE_INLINE void transpose(Float8 (&r)[kBlock]) {
     }
 }
 
-// lines -> rows: rows[i apart + lane] = lines[lane][i], i < count. Up to 7 values behind a line's last are read.
+// lines -> rows: rows[i apart + lane] = lines[lane][i], i < count. Up to 7 values behind a line's last are
+// read.
 template <bool kWide>
 ISOWAVE_INLINE void loadLanes(const float* const (&lines)[kBlock], int count, double* rows,
                               std::ptrdiff_t apart) {
@@ -60,8 +63,8 @@ ISOWAVE_INLINE void loadLanes(const float* const (&lines)[kBlock], int count, do
     }
 }
 
-// rows -> lines: lines[lane][i] = rows[i apart + lane] rounded, i < count, lane < lanes. Up to 7 values behind a line's last
-// are read and written as they are.
+// rows -> lines: lines[lane][i] = rows[i apart + lane] rounded, i < count, lane < lanes. Up to 7 values
+// behind a line's last are read and written as they are.
 template <bool kWide>
 ISOWAVE_INLINE void storeLanes(const double* rows, std::ptrdiff_t apart, int count, float* const* lines,
                                int lanes) {

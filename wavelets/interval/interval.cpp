@@ -5,26 +5,13 @@
 
 #include "wavelets/interval/kernels.h"
 
-// Two paths that compute the same thing (interval_kernels.h):
+// Two paths that compute the same thing (kernels.h):
 //   short  n <= kShort: one small dense matrix for each n, folded by its mirror symmetry
 //   long   banded LU of T = interleaved [P|Q] without pivoting: |L| <= 13.8, |U| <= 1.8, pivots >= 0.07 for
 //          every n (IntervalMatrices.TheBandedFactorsStayBounded)
 // Rejected here: analysis by the two Gram systems E(7), E(8). Two banded solves instead of one.
 
 namespace isowave::wavelets {
-
-void joinRuns(std::span<const Run> runs, std::vector<Interval>& out) {
-    out.clear();
-    for (const Run& run : runs) {
-        // x & 1 is the parity of negative x too (two's complement, as C++20 requires).
-        const std::int64_t first = (run.first & 1) ? run.first : run.first - 1;
-        const std::int64_t last = (run.last & 1) ? run.last : run.last + 1;
-        if (!out.empty() && first - out.back().last <= kJoin)
-            out.back().last = last;
-        else
-            out.push_back({first, last});
-    }
-}
 
 IntervalTransform::IntervalTransform() {
     shortAnalysis(1);

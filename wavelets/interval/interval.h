@@ -1,5 +1,6 @@
 // The interval algebra: cubic B-spline wavelets on a cut-off domain, one interval of known control points at
-// a time. No grid in here; curves2d/ and the 3D direction both stand on it.
+// a time. It knows no grid: curves2d/ and the directions of the 3D transform (wavelets/direction.h) both use
+// it.
 //
 // Notation (E = Esteve, Brunet, Vinacua: Multiresolution for algebraic curves and surfaces using wavelets):
 //   f  fine control points x_0 .. x_{2n+2}, at lattice positions first .. last, both odd
@@ -21,46 +22,16 @@
 //   (4) mirroring f mirrors c and d.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "wavelets/interval/runs.h"
+
 namespace isowave::wavelets {
 
-// Largest error of a round trip of one interval in double, relative to K. Seen: see
-// tests/wavelets/interval_test.
+// Largest error of a round trip of one interval in double, relative to K;
+// tests/wavelets/interval/interval_test.cpp has what is seen.
 inline constexpr double kRoundTrip = 1e-13;
-
-// Accessory points added beyond either end of an interval; coefficients of each kind rejected at either end.
-inline constexpr int kAccessory = 4;
-inline constexpr int kRejected = 2;
-
-// Two intervals whose odd ends are at most this far apart become one.
-inline constexpr int kJoin = 4;
-
-// A maximal run of known positions, [first, last].
-struct Run {
-    std::int64_t first, last;
-    friend bool operator==(const Run&, const Run&) = default;
-};
-
-// An odd-ended interval of fine positions, [first, last]; holds one run or several joined ones.
-struct Interval {
-    std::int64_t first, last;
-
-    std::int64_t coarseIntervals() const { return (last - first - 2) / 2; }  // n
-    std::int64_t fineSize() const { return last - first + 1; }               // 2n + 3
-    std::int64_t coarseSize() const { return coarseIntervals() + 3; }
-    std::int64_t detailSize() const { return coarseIntervals(); }
-    std::int64_t firstCoarse() const { return (first - 1) / 2; }  // exact: first is odd
-    std::int64_t lastCoarse() const { return (last + 1) / 2; }
-    std::int64_t firstDetail() const { return firstCoarse() + 1; }
-    friend bool operator==(const Interval&, const Interval&) = default;
-};
-
-// Runs (ascending, separated by at least one unknown position, each of length >= 4) -> intervals: ends moved
-// outwards to odd positions, neighbours whose ends are <= kJoin apart joined. Replaces the content of `out`.
-void joinRuns(std::span<const Run> runs, std::vector<Interval>& out);
 
 // Analysis and synthesis of one interval. Holds scratch memory: one object a thread; no call allocates once
 // the longest interval has been seen. Results do not depend on the history of calls.
@@ -79,7 +50,7 @@ class IntervalTransform {
                     std::span<double> fine);
 
   private:
-    double* row0(int n);  // rows of interval_kernels.h, all 0
+    double* row0(int n);  // rows of kernels.h, all 0
     double* folded(int n) {
         return scratch_.data() + (scratch_.size() - static_cast<std::size_t>(2 * n + 5));
     }

@@ -1,11 +1,12 @@
-// Analysis and synthesis of several intervals of one length side by side, one lane each. Everything is templated on
-// how many doubles go into one operation (Pack), and forced inline, so that one text serves a single interval
-// (interval.cpp), two lanes an instruction and, inside functions compiled for them, four and eight (interval_batch.cpp).
-// Every lane sees the same operations in the same order whatever the Pack, and -ffp-contract=off keeps compilers from
+// Analysis and synthesis of several intervals of one length side by side, one lane each. Everything is
+// templated on how many doubles go into one operation (Pack), and forced inline, so that one text serves a
+// single interval (interval.cpp), two lanes an instruction and, inside functions compiled for them, four and
+// eight (batch.cpp). Every lane sees the same operations in the same order whatever the Pack, and
+// -ffp-contract=off keeps compilers from
 // fusing them: results are the same to the bit on every machine.
 //
-// Rows are those of interval_tables.h; `y` points at lane 0 of row 0, rows are `stride` doubles apart, kMargin rows lie
-// before row 0 and kBandwidth behind the last.
+// Rows are those of tables.h; `y` points at lane 0 of row 0, rows are `stride` doubles apart, kMargin rows
+// lie before row 0 and kBandwidth behind the last.
 #pragma once
 
 #include <cmath>
@@ -58,7 +59,7 @@ struct Two {
     ISOWAVE_INLINE static Two difference(const Two& x, const Two& y) { return {x.a - y.a, x.b - y.b}; }
 };
 
-// ---- short ----------------------------------------------------------------------------------------------
+// ---- short
 
 // out may be y: everything is read into `folded`, 2n + 5 rows of Pack::kWidth, before anything is written.
 template <class Pack>
@@ -99,7 +100,7 @@ ISOWAVE_INLINE void applyShort(const ShortMap& map, std::ptrdiff_t stride, const
     }
 }
 
-// ---- long -----------------------------------------------------------------------------------------------
+// ---- long
 
 // T z = y in place. REQUIRES: the kBandwidth rows before row 0 and behind the last hold finite values: their
 // coefficients are 0.
@@ -133,9 +134,9 @@ ISOWAVE_INLINE Pack bandProduct(const BandRow& row, std::ptrdiff_t stride, const
     return sum;
 }
 
-// Fills in the rejected coefficients at one end. mirrored: 1 at the left, -1 at the right, where rows count backwards.
-// While the rejected ones are 0, T y on the accessory rows is what the known ones contribute; the rest of the accessory
-// values is theirs.
+// Fills in the rejected coefficients at one end. mirrored: 1 at the left, -1 at the right, where rows count
+// backwards. While the rejected ones are 0, T y on the accessory rows is what the known ones contribute; the
+// rest of the accessory values is theirs.
 template <class Pack>
 ISOWAVE_INLINE void recover(const BandFactors& factors, int n, std::ptrdiff_t stride, double* y,
                             int accessoryRow, bool right) {
@@ -153,7 +154,7 @@ ISOWAVE_INLINE void recover(const BandFactors& factors, int n, std::ptrdiff_t st
     }
 }
 
-// ---- either ---------------------------------------------------------------------------------------------
+// ---- either
 
 // Rows 3 .. 2n+7 of y hold (left; f; right); then they hold c and d.
 template <class Pack>
@@ -168,8 +169,8 @@ ISOWAVE_INLINE void analyseRows(int n, std::ptrdiff_t stride, double* y, double*
     solveBanded<Pack>(bandFactors(), n, stride, y);
 }
 
-// Rows 3 .. 2n+7 of y hold c and d, kLeftRow and kRightRow the accessory values; then row 4 + j of `out` holds f_j.
-// out may not be y.
+// Rows 3 .. 2n+7 of y hold c and d, kLeftRow and kRightRow the accessory values; then row 4 + j of `out`
+// holds f_j. out may not be y.
 template <class Pack>
 ISOWAVE_INLINE void synthesiseRows(int n, std::ptrdiff_t stride, double* y, double* folded, double* out) {
     if (n <= kShort) return applyShort<Pack>(shortSynthesis(n), stride, y, folded, out);

@@ -3,7 +3,7 @@
 #include <array>
 #include <cassert>
 
-#include "wavelets/interval/interval.h"
+#include "wavelets/interval/runs.h"
 
 namespace isowave::wavelets {
 namespace {
@@ -54,7 +54,7 @@ Matrix gramMatrix(int m) {
     return gram;
 }
 
-Matrix refinementMatrix(int n) {
+Matrix twoScaleMatrix(int n) {
     constexpr std::array<int, 5> kMask8 = {1, 4, 6, 4, 1};
     Matrix p = Matrix::Zero(2 * n + 3, n + 3);
     for (int j = 0; j < n + 3; ++j)
@@ -65,7 +65,7 @@ Matrix refinementMatrix(int n) {
 
 Matrix waveletMatrix(int n) {
     assert(n >= 5);
-    const Matrix constraints = refinementMatrix(n).transpose() * gramMatrix(2 * n);
+    const Matrix constraints = twoScaleMatrix(n).transpose() * gramMatrix(2 * n);
     Matrix q = Matrix::Zero(2 * n + 3, n);
     for (int k = 0; k < n; ++k) {
         const Rows rows = supportOf(k, n);
@@ -80,7 +80,7 @@ Matrix waveletMatrix(int n) {
 }
 
 Matrix interleavedMatrix(int n) {
-    const Matrix p = refinementMatrix(n), q = waveletMatrix(n);
+    const Matrix p = twoScaleMatrix(n), q = waveletMatrix(n);
     Matrix t(2 * n + 3, 2 * n + 3);
     for (int j = 0; j < n + 3; ++j) t.col(coarseColumn(n, j)) = p.col(j);
     for (int k = 0; k < n; ++k) t.col(detailColumn(k)) = q.col(k);

@@ -1,8 +1,8 @@
-// The matrices behind interval.h, dense and in long double: built once, read by the tables of interval.cpp
-// and by the tests. Nothing here runs on a hot path.
+// The matrices behind interval.h, dense and in long double: built once, read by tables.cpp and
+// by the tests. Nothing here runs on a hot path.
 //
 // Notation: a cut-off domain of m unit intervals carries m + 3 uniform cubic B-splines, all knots simple.
-//   P  (2n+3) x (n+3)   two-scale refinement, columns (1,4,6,4,1)/8 cut off at the ends; row i of P is fine
+//   P  (2n+3) x (n+3)   two-scale relation, columns (1,4,6,4,1)/8 cut off at the ends; row i of P is fine
 //                       position i - 1, column j coarse position j - 1: column j is centred on row 2j - 1
 //   I  (m+3) x (m+3)    inner products of the B-splines on the domain; inner rows are
 //                       (1,120,1191,2416,1191,120,1)/5040
@@ -25,7 +25,7 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 Matrix gramMatrix(int m);
-Matrix refinementMatrix(int n);
+Matrix twoScaleMatrix(int n);
 Matrix waveletMatrix(int n);      // REQUIRES: n >= 5
 Matrix interleavedMatrix(int n);  // T; REQUIRES: n >= 5
 

@@ -5,7 +5,7 @@
 namespace isowave::wavelets {
 namespace {
 
-// ---- short ----------------------------------------------------------------------------------------------
+// ---- short
 
 // Where analysisMap() and synthesisMap() file (c; d), in the order of rows.
 std::vector<int> coefficientRows(int n) {
@@ -92,7 +92,7 @@ Maps makeMaps(ShortMap make(int)) {
     return maps;
 }
 
-// ---- long -----------------------------------------------------------------------------------------------
+// ---- long
 
 // T of ne coarse intervals from that of more: both ends and, with period 2, the middle are the same.
 // REQUIRES: ne > kShort + kAccessory.
@@ -118,8 +118,8 @@ std::vector<BandRow> factor(Matrix t) {
             for (int j = k; j < std::min(size, k + kBandwidth + 1); ++j) t(i, j) -= multiplier * t(k, j);
             t(i, k) = multiplier;
         }
-    // With pivots p and y_i = (x_i - sum l p_s y_s) / p_i the upper factor has a unit diagonal: one multiplication
-    // less on the way from one unknown to the next.
+    // With pivots p and y_i = (x_i - sum l p_s y_s) / p_i the upper factor has a unit diagonal: one
+    // multiplication less on the way from one unknown to the next.
     for (int i = 0; i < size; ++i) {
         const Real pivot = t(i, i);
         rows[i].scale = static_cast<double>(1 / pivot);

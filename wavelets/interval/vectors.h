@@ -1,5 +1,5 @@
-// What the machine's vector instructions are, asked when the program runs: one binary serves every processor, and uses what
-// it finds. Results never depend on it.
+// What the machine's vector instructions are, asked when the program runs: one binary serves every processor,
+// and uses what it finds. Results never depend on it.
 #pragma once
 
 namespace isowave::wavelets {

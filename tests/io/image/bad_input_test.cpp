@@ -4,9 +4,9 @@
 
 #include <functional>
 
-#include "tests/volume/image_files.h"
-#include "tests/volume/image_itk.h"
 #include "isowave/image.h"
+#include "tests/io/image/files.h"
+#include "tests/io/image/itk.h"
 
 namespace isowave {
 namespace {
@@ -245,7 +245,7 @@ TEST_F(BadImage, SlicesThatDiffer) {
     EXPECT_THAT(refusal(folder), HasSubstr("holds 2 PNG and 1 TIFF slices"));
 }
 
-// ----------------------------------------------------------------------------------------- truncations
+// ---- truncations
 
 enum class Cut { refused, refusedOrWhole };
 
@@ -346,7 +346,7 @@ TEST_F(Truncation, OfAPngSlice) {
     sweep(stack / "2.png", stack);
 }
 
-// ----------------------------------------------------------------------------------------- corruptions
+// ---- corruptions
 
 }  // namespace
 }  // namespace isowave

@@ -1,5 +1,5 @@
-// Headers that were changed at random places: the image is read or refused in one line. Nothing is printed and
-// nothing aborts, which ITK, VNL and the libraries below them do over a wrong number.
+// Headers that were changed at random places: the image is read or refused in one line. Nothing is printed
+// and nothing aborts, which ITK, VNL and the libraries below them do over a wrong number.
 //
 // Each case is read in a child process, many to a child; where a child dies the next one goes on behind the
 // case that killed it.
@@ -13,9 +13,9 @@
 #include <random>
 #include <set>
 
-#include "tests/volume/image_files.h"
-#include "tests/volume/image_itk.h"
 #include "isowave/image.h"
+#include "tests/io/image/files.h"
+#include "tests/io/image/itk.h"
 #include "volume/linear_transform.h"
 
 namespace isowave {
@@ -30,7 +30,7 @@ struct Mutation {
     std::string bytes;  // of the whole file
 };
 
-// ---- reading in a child ----
+// ---- reading in a child
 
 // What the child tells its parent, in memory that both see.
 struct Shared {
@@ -51,9 +51,10 @@ std::string readOne(const fs::path& image, Shared& shared) {
         const Image read = readImage(image, options);
         ++shared.read;
         if (read.voxelCount() != static_cast<std::int64_t>(read.values.size())) return "voxels are missing";
-        for (int row = 0; row < 4; ++row)
-            for (int column = 0; column < 4; ++column)
-                if (!std::isfinite(read.indexToWorld(row, column))) return "a transform that is not finite";
+        for (int a = 0; a < 3; ++a)
+            for (const double x : {read.indexToWorld.origin[a], read.indexToWorld.axis[0][a],
+                                   read.indexToWorld.axis[1][a], read.indexToWorld.axis[2][a]})
+                if (!std::isfinite(x)) return "a transform that is not finite";
         for (const double s : read.spacing())
             if (!(s > 0)) return fmt::format("a spacing of {}", s);
         linearTransform(read.indexToWorld, image.string());
@@ -129,7 +130,7 @@ class Corruption : public test::ImageFiles {
     }
 };
 
-// ---- mutations ----
+// ---- mutations
 
 std::string replaced(std::string bytes, std::size_t at, std::size_t count, const std::string& by) {
     return bytes.replace(at, count, by);

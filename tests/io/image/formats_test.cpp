@@ -5,9 +5,9 @@
 #include <cstring>
 #include <limits>
 
-#include "tests/volume/image_files.h"
-#include "tests/volume/image_itk.h"
 #include "isowave/image.h"
+#include "tests/io/image/files.h"
+#include "tests/io/image/itk.h"
 
 namespace isowave {
 namespace {
@@ -73,7 +73,7 @@ TEST_F(ImageFormat, FloatingPointTypesComeBack) {
     roundTripEverywhere<double>(folder, "float64");
 }
 
-// ------------------------------------------------------------------------------------------------- raw
+// ---- raw
 
 template <class T>
 std::string rawBytes(const std::vector<T>& values, bool bigEndian) {
@@ -136,7 +136,7 @@ TEST_F(ImageFormat, IntegersBeyondFloat32AreCounted) {
                 ElementsAre("2 of 4 int32 voxels are too large for float32 and were rounded"));
 }
 
-// ---------------------------------------------------------------------------------------- TIFF and PNG
+// ---- TIFF and PNG
 
 template <class T>
 void writeSlices(const fs::path& folder, const std::string& extension,
@@ -203,7 +203,7 @@ TEST_F(ImageFormat, TiffAndPngAreKnownByTheirFirstBytes) {
     expectPattern<unsigned char>(readImage(folder / "stack"));
 }
 
-// ------------------------------------------------------------------------------------------ dimensions
+// ---- dimensions
 
 TEST_F(ImageFormat, AVolumeOneVoxelThickIsAVolume) {
     for (const std::string name : {"a.nrrd", "a.mha", "a.nii"}) {

@@ -4,8 +4,9 @@
 
 #include <array>
 
-#include "isowave/image.h"
+#include "isowave/mesh.h"
 #include "io/image/itk.h"
+#include "isowave/image.h"
 
 namespace isowave {
 namespace {
@@ -46,11 +47,12 @@ Float3::Pointer cropped(const Float3* image, const Float3::IndexType& first, con
     return crop->GetOutput();
 }
 
-openvdb::Vec3d worldOf(const Image& image, const openvdb::Vec3d& index) {
-    return image.indexToWorld.transform(index);
+Vec3 worldOf(const Image& image, const Vec3& index) {
+    const auto [x, y, z] = image.indexToWorld({index.x, index.y, index.z});
+    return {x, y, z};
 }
 
-openvdb::Vec3d worldOf(const Float3* image, const openvdb::Vec3d& index) {
+Vec3 worldOf(const Float3* image, const Vec3& index) {
     itk::ContinuousIndex<double, 3> at;
     for (int a = 0; a < 3; ++a) at[a] = index[a];
     Float3::PointType point;
@@ -59,11 +61,11 @@ openvdb::Vec3d worldOf(const Float3* image, const openvdb::Vec3d& index) {
 }
 
 // Corners, and points between voxels.
-std::vector<openvdb::Vec3d> somePoints() {
-    std::vector<openvdb::Vec3d> points;
+std::vector<Vec3> somePoints() {
+    std::vector<Vec3> points;
     for (const double x : {0.0, 0.37, 4.0})
         for (const double y : {0.0, 2.81, 5.0})
-            for (const double z : {0.0, 1.5, 3.0}) points.emplace_back(x, y, z);
+            for (const double z : {0.0, 1.5, 3.0}) points.push_back({x, y, z});
     return points;
 }
 
@@ -92,9 +94,9 @@ TEST_P(Geometry, PointsLieWhereItkPutsThem) {
     test::writeItk(written.GetPointer(), path);
     const Image image = readImage(path);
     const auto asItk = test::readItk<Float3>(path);
-    for (const openvdb::Vec3d& p : somePoints()) {
-        EXPECT_LT((worldOf(image, p) - worldOf(asItk.GetPointer(), p)).length(), 1e-9) << p;
-        EXPECT_LT((worldOf(image, p) - worldOf(written.GetPointer(), p)).length(), format.writtenTo) << p;
+    for (const Vec3& p : somePoints()) {
+        EXPECT_LT(length(worldOf(image, p) - worldOf(asItk.GetPointer(), p)), 1e-9);
+        EXPECT_LT(length(worldOf(image, p) - worldOf(written.GetPointer(), p)), format.writtenTo);
     }
     const auto spacing = image.spacing();
     for (unsigned a = 0; a < 3; ++a) EXPECT_NEAR(spacing[a], written->GetSpacing()[a], 1e-6);
@@ -108,10 +110,9 @@ TEST_P(Geometry, ACroppedExtentStaysInItsPlace) {
     test::writeItk(part.GetPointer(), path);
     const Image image = readImage(path);
     EXPECT_EQ(image.size, (std::array<std::int64_t, 3>{5, 6, 4}));
-    const openvdb::Vec3d first(2, 1, 3);
-    for (const openvdb::Vec3d& p : somePoints())
-        EXPECT_LT((worldOf(image, p) - worldOf(whole.GetPointer(), p + first)).length(), format.writtenTo)
-            << p;
+    const Vec3 first{2, 1, 3};
+    for (const Vec3& p : somePoints())
+        EXPECT_LT(length(worldOf(image, p) - worldOf(whole.GetPointer(), p + first)), format.writtenTo);
     for (long z = 0; z < 4; ++z)
         for (long y = 0; y < 6; ++y)
             for (long x = 0; x < 5; ++x)

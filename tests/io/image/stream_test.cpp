@@ -1,5 +1,5 @@
-// Images in slabs: the same as whole images, to the bit, for every format, slab height and solid; what is wrong is
-// found as it is there; and files far larger than 2^32 voxels.
+// Images in slabs: the same as whole images, to the bit, for every format, slab height and solid; what is
+// wrong is found as it is there; and files far larger than 2^32 voxels.
 #include "io/image/stream.h"
 
 #include <openvdb/tools/Count.h>
@@ -10,9 +10,10 @@
 #include <random>
 #include <set>
 
-#include "image_files.h"
-#include "image_itk.h"
+#include "tests/io/image/files.h"
+#include "tests/io/image/itk.h"
 #include "volume/distance.h"
+#include "volume/image_statistics.h"
 
 namespace isowave {
 namespace {
@@ -250,7 +251,7 @@ TEST_F(ImageStreamFiles, CountWhatIsInAnImage) {
     EXPECT_TRUE(statisticsOf(many).distinct.empty());
 }
 
-// ---- what is wrong --------------------------------------------------------------------------------------
+// ---- what is wrong
 
 std::string lineOf(const std::function<void()>& work) {
     try {
@@ -318,9 +319,10 @@ TEST_F(ImageStreamFiles, StopWhenTheyAreToldTo) {
     EXPECT_THROW(statisticsOf(stream, {}, progress), Cancelled);
 }
 
-// ---- beyond 2^31 and 2^32 voxels ------------------------------------------------------------------------
+// ---- beyond 2^31 and 2^32 voxels
 
-// A headerless file of n^3 bytes that takes next to no room on the disk: a ball of 200 around `centre`, 0 elsewhere.
+// A headerless file of n^3 bytes that takes next to no room on the disk: a ball of 200 around `centre`, 0
+// elsewhere.
 fs::path writeSparseBall(const fs::path& path, std::int64_t n, Coord centre, int radius) {
     std::ofstream(path, std::ios::binary).put(0);
     fs::resize_file(path, static_cast<std::uintmax_t>(n * n * n));

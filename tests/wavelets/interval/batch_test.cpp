@@ -1,4 +1,5 @@
-// The promises of wavelets/interval/batch.h and waiting_room.h, for every width of vectors that this machine has.
+// The promises of wavelets/interval/batch.h and batch_queue.h, for every width of vectors that this machine
+// has.
 #include "wavelets/interval/batch.h"
 
 #include <gtest/gtest.h>
@@ -9,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "vector_widths.h"
+#include "tests/wavelets/interval/vector_widths.h"
+#include "wavelets/batch_queue.h"
 #include "wavelets/interval/interval.h"
-#include "wavelets/waiting_room.h"
 
 namespace isowave::wavelets {
 namespace {
@@ -30,8 +31,8 @@ Line randomLine(int n, std::mt19937& rng) {
 
 constexpr float kGuard = 12345;  // what lies behind a line
 
-// Room for the fine values of each lane with their accessory ones, and for its coefficients; every line with what may be
-// read behind it.
+// Room for the fine values of each lane with their accessory ones, and for its coefficients; every line with
+// what may be read behind it.
 struct Lanes {
     std::vector<float> fine[kLanes], coarse[kLanes], detail[kLanes];
     AnalysisBatch analysis;
@@ -79,19 +80,19 @@ TEST_P(IntervalBatch, EveryLaneIsWhatOneIntervalGivesToTheBit) {
         for (const int lanes : {kLanes, 5, 3, 1}) {
             std::vector<Line> lines;
             for (int lane = 0; lane < lanes; ++lane) lines.push_back(randomLine(n, rng));
-            Lanes room(n, lanes);
-            for (int lane = 0; lane < lanes; ++lane) room.putFine(lane, lines[lane]);
-            transform.analyse(room.analysis);
+            Lanes queue(n, lanes);
+            for (int lane = 0; lane < lanes; ++lane) queue.putFine(lane, lines[lane]);
+            transform.analyse(queue.analysis);
             for (int lane = 0; lane < lanes; ++lane) {
                 std::vector<double> coarse(n + 3), detail(n);
                 const Line& line = lines[lane];
                 IntervalTransform().analyse(line.fine, line.left, line.right, coarse, detail);
                 for (int j = 0; j < n + 3; ++j)
-                    ASSERT_EQ(room.coarse[lane][j], static_cast<float>(coarse[j])) << n << " " << j;
+                    ASSERT_EQ(queue.coarse[lane][j], static_cast<float>(coarse[j])) << n << " " << j;
                 for (int k = 0; k < n; ++k)
-                    ASSERT_EQ(room.detail[lane][k], static_cast<float>(detail[k])) << n << " " << k;
+                    ASSERT_EQ(queue.detail[lane][k], static_cast<float>(detail[k])) << n << " " << k;
             }
-            room.expectGuards();
+            queue.expectGuards();
         }
 }
 
@@ -102,16 +103,16 @@ TEST_P(IntervalBatch, SynthesisOfEveryLaneIsWhatOneIntervalGivesToTheBit) {
         for (const int lanes : {kLanes, 2}) {
             std::vector<Line> lines;  // fine: any coefficients, c and d one behind the other
             for (int lane = 0; lane < lanes; ++lane) lines.push_back(randomLine(n, rng));
-            Lanes room(n, lanes);
+            Lanes queue(n, lanes);
             for (int lane = 0; lane < lanes; ++lane) {
                 for (int j = 0; j < n + 3; ++j)
-                    room.coarse[lane][j] = static_cast<float>(lines[lane].fine[j]);
+                    queue.coarse[lane][j] = static_cast<float>(lines[lane].fine[j]);
                 for (int k = 0; k < n; ++k)
-                    room.detail[lane][k] = static_cast<float>(lines[lane].fine[n + 3 + k]);
-                room.synthesis.left[lane] = lines[lane].left;
-                room.synthesis.right[lane] = lines[lane].right;
+                    queue.detail[lane][k] = static_cast<float>(lines[lane].fine[n + 3 + k]);
+                queue.synthesis.left[lane] = lines[lane].left;
+                queue.synthesis.right[lane] = lines[lane].right;
             }
-            transform.synthesise(room.synthesis);
+            transform.synthesise(queue.synthesis);
             for (int lane = 0; lane < lanes; ++lane) {
                 const Line& line = lines[lane];
                 const std::span coefficients(line.fine);
@@ -119,11 +120,11 @@ TEST_P(IntervalBatch, SynthesisOfEveryLaneIsWhatOneIntervalGivesToTheBit) {
                 IntervalTransform().synthesise(coefficients.first(n + 3), coefficients.subspan(n + 3),
                                                line.left, line.right, fine);
                 for (int j = 0; j < 2 * n + 3; ++j)
-                    ASSERT_EQ(room.fine[lane][1 + j], static_cast<float>(fine[j])) << n << " " << j;
-                EXPECT_EQ(room.fine[lane][0], kGuard);
-                EXPECT_EQ(room.fine[lane][2 * n + 4], kGuard);
+                    ASSERT_EQ(queue.fine[lane][1 + j], static_cast<float>(fine[j])) << n << " " << j;
+                EXPECT_EQ(queue.fine[lane][0], kGuard);
+                EXPECT_EQ(queue.fine[lane][2 * n + 4], kGuard);
             }
-            room.expectGuards();
+            queue.expectGuards();
         }
 }
 
@@ -131,38 +132,38 @@ TEST_P(IntervalBatch, WhatALaneHeldBeforeDoesNotMatter) {
     std::mt19937 rng(4);
     BatchTransform used(GetParam()), fresh(GetParam());
     for (int n = 40; n >= 1; --n) {  // leaves values behind the rows of the shorter ones
-        Lanes room(n, kLanes);
-        for (auto& line : room.fine)
+        Lanes queue(n, kLanes);
+        for (auto& line : queue.fine)
             std::fill(line.begin(), line.end(), std::numeric_limits<float>::quiet_NaN());
-        used.analyse(room.analysis);
-        used.synthesise(room.synthesis);
+        used.analyse(queue.analysis);
+        used.synthesise(queue.synthesis);
     }
     const Line line = randomLine(20, rng);
     std::vector<std::vector<float>> results;
     for (BatchTransform* transform : {&used, &fresh}) {
-        Lanes room(20, 1);
-        room.putFine(0, line);
-        transform->analyse(room.analysis);
-        results.push_back(room.coarse[0]);
-        results.push_back(room.detail[0]);
-        room.synthesis.left[0] = room.synthesis.right[0] = 1;
-        transform->synthesise(room.synthesis);
-        results.push_back(room.fine[0]);
+        Lanes queue(20, 1);
+        queue.putFine(0, line);
+        transform->analyse(queue.analysis);
+        results.push_back(queue.coarse[0]);
+        results.push_back(queue.detail[0]);
+        queue.synthesis.left[0] = queue.synthesis.right[0] = 1;
+        transform->synthesise(queue.synthesis);
+        results.push_back(queue.fine[0]);
     }
     for (int i = 0; i < 3; ++i) EXPECT_EQ(results[i], results[3 + i]);
 }
 
-// ---- waiting ---------------------------------------------------------------------------------------------
+// ---- waiting
 
 struct FakeBatch {
     int n = 0, lanes = 0;
     int ids[kLanes];
 };
 
-TEST(WaitingRooms, EveryIntervalRunsOnceBesideOthersOfItsLength) {
-    constexpr int kSlots = WaitingRoom<FakeBatch>::kSlots;
+TEST(BatchQueue, EveryIntervalRunsOnceBesideOthersOfItsLength) {
+    constexpr int kSlots = BatchQueue<FakeBatch>::kSlots;
     std::mt19937 rng(5);
-    WaitingRoom<FakeBatch> room;
+    BatchQueue<FakeBatch> queue;
     std::vector<int> lengthOf;
     std::vector<int> timesRun;
     int full = 0, early = 0;
@@ -182,10 +183,10 @@ TEST(WaitingRooms, EveryIntervalRunsOnceBesideOthersOfItsLength) {
             const int n = 1 + static_cast<int>(rng() % 5) + (rng() % 10 ? 0 : kSlots * (1 + round));
             lengthOf.push_back(n);
             timesRun.push_back(0);
-            room.add(
+            queue.add(
                 n, [&](FakeBatch& batch, int lane) { batch.ids[lane] = id; }, run);
         }
-        room.runAll(run);
+        queue.flush(run);
         EXPECT_EQ(timesRun, std::vector<int>(timesRun.size(), 1)) << "all that waited have run";
     }
     EXPECT_GT(full, 30);

@@ -1,4 +1,4 @@
-// The promises of wavelets/interval/interval.h and interval_matrices.h, one test each.
+// The promises of wavelets/interval/interval.h and interval/matrices.h, one test each.
 #include "wavelets/interval/interval.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(IntervalMatrices, InnerRowsOfTheGramMatrixAreTheKnownFractions) {
 
 TEST(IntervalMatrices, DetailsAreOrthogonalToTheCoarseSpace) {
     for (int n = 5; n <= 40; ++n) {
-        const Matrix product = refinementMatrix(n).transpose() * gramMatrix(2 * n) * waveletMatrix(n);
+        const Matrix product = twoScaleMatrix(n).transpose() * gramMatrix(2 * n) * waveletMatrix(n);
         EXPECT_LT(double(product.cwiseAbs().maxCoeff()), 1e-15) << n;
     }
 }
@@ -65,7 +65,7 @@ TEST(IntervalMatrices, InteriorWaveletIsChuiAndWangs) {
     const int integers[] = {1, -124, 1677, -7904, 18482, -24264};
     const Matrix q = waveletMatrix(9);
     // Found from orthogonality alone: the null space on 11 rows around the middle.
-    Eigen::FullPivLU<Matrix> lu((refinementMatrix(9).transpose() * gramMatrix(18)).middleCols(5, 11));
+    Eigen::FullPivLU<Matrix> lu((twoScaleMatrix(9).transpose() * gramMatrix(18)).middleCols(5, 11));
     lu.setThreshold(1e-12L);
     const Matrix kernel = lu.kernel();
     ASSERT_EQ(kernel.cols(), 1);

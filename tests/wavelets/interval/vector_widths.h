@@ -1,4 +1,5 @@
-// The vectors that this machine has, narrowest first: what is written for the widest must give the same with all of them.
+// The vectors that this machine has, narrowest first: what is written for the widest must give the same with
+// all of them.
 #pragma once
 
 #include <gtest/gtest.h>

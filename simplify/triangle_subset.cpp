@@ -1,8 +1,8 @@
-#include "simplify/sample.h"
+#include "simplify/triangle_subset.h"
 
 namespace isowave {
 
-TriangleMesh everyFew(const TriangleMesh& mesh, std::size_t atMost) {
+TriangleMesh evenSubset(const TriangleMesh& mesh, std::size_t atMost) {
     const std::size_t stride = (mesh.triangles.size() + atMost - 1) / atMost;
     if (stride <= 1) return mesh;
     TriangleMesh result;

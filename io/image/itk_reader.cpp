@@ -1,19 +1,28 @@
-// Files that ITK's readers know: NRRD, MetaImage, NIfTI, TIFF, PNG. One reader is made by name; ITK's
-// factories, which are global and load plugins, stay out of it.
+// One reader is made by name; ITK's factories, which are global and load plugins, are not used. Slices that are PNG are
+// read by io/picture.
+#include "io/image/itk_reader.h"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkPNGImageIO.h>
 #include <itkTIFFImageIO.h>
 
 #include <algorithm>
 #include <cstdarg>
+#include <cstring>
+#include <functional>
 
-#include "isowave/error.h"
-#include "io/image/header.h"
+#include "base/read_file.h"
+#include "io/image/check.h"
 #include "io/image/kind.h"
+#include "io/image/metaimage.h"
+#include "io/image/nifti.h"
+#include "io/image/nrrd.h"
+#include "io/image/tiff.h"
+#include "io/picture/png.h"
+#include "isowave/error.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -80,14 +89,18 @@ ValueType typeOf(const fs::path& path, const itk::ImageIOBase& io) {
     }
 }
 
+[[noreturn]] void throwNotScalar(const fs::path& path, const std::string& kind, unsigned numbers) {
+    throw InputError(path.string(),
+                     fmt::format("holds {} voxels of {} numbers; expected one number a voxel; convert it "
+                                 "to grey",
+                                 kind, numbers));
+}
+
 void requireScalar(const fs::path& path, const itk::ImageIOBase& io) {
     if (io.GetNumberOfComponents() == 1 && io.GetPixelType() == itk::IOPixelEnum::SCALAR) return;
     std::string kind = io.GetPixelTypeAsString(io.GetPixelType());
     if (kind == "rgb" || kind == "rgba") kind = kind == "rgb" ? "RGB" : "RGBA";
-    throw InputError(path.string(),
-                     fmt::format("holds {} voxels of {} numbers; expected one number a voxel; convert it "
-                                 "to grey",
-                                 kind, io.GetNumberOfComponents()));
+    throwNotScalar(path, kind, io.GetNumberOfComponents());
 }
 
 // Sets what the reader says of axis a; a 2D reader says nothing of z.
@@ -113,6 +126,21 @@ void takeHeader(const fs::path& path, const itk::ImageIOBase& io, Header& header
                              fmt::format("is a series of {} volumes; expected one; extract one of them",
                                          io.GetDimensions(a)));
 }
+
+// What the bytes of a PNG say of its one slice.
+void takePngHeader(const fs::path& path, const Picture& picture, Header& header) {
+    if (picture.channels != 1)
+        throwNotScalar(path,
+                       picture.channels == 3   ? "RGB"
+                       : picture.channels == 4 ? "RGBA"
+                                               : "scalar",
+                       static_cast<unsigned>(picture.channels));
+    header.type = picture.type;
+    header.size = {picture.width, picture.height, 1};
+    if (picture.pixelSize) header.spacing = {(*picture.pixelSize)[0], (*picture.pixelSize)[1], 1};
+}
+
+std::string bytesOf(const fs::path& path) { return readFile(path, "a slice"); }
 
 [[noreturn]] void throwFlat(const fs::path& path, std::int64_t x, std::int64_t y, const std::string& remedy) {
     throw InputError(path.string(),
@@ -140,8 +168,6 @@ itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
         io = itk::NiftiImageIO::New();
     else if (kind == FileKind::tiff)
         io = itk::TIFFImageIO::New();
-    else if (kind == FileKind::png)
-        io = itk::PNGImageIO::New();
     else
         io = itk::NrrdImageIO::New();
     io->SetFileName(path.string());
@@ -180,7 +206,6 @@ HeaderFacts factsOf(const fs::path& path, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::MetaImageIO*>(&io)) return checkMetaImage(path);
     if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return checkNifti(path);
     if (dynamic_cast<const itk::TIFFImageIO*>(&io)) checkTiff(path);
-    if (dynamic_cast<const itk::PNGImageIO*>(&io)) checkPng(path);
     return {};
 }
 
@@ -188,7 +213,7 @@ std::string formatOf(const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return "NRRD";
     if (dynamic_cast<const itk::MetaImageIO*>(&io)) return "MetaImage";
     if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return "NIfTI";
-    return dynamic_cast<const itk::PNGImageIO*>(&io) ? "PNG" : "TIFF";
+    return "TIFF";
 }
 
 // TIFF and PNG say at most how large a pixel is; a voxel is taken to be as high as it is wide.
@@ -207,6 +232,11 @@ bool isPlain(const HeaderFacts& facts, const Header& header) {
 }  // namespace
 
 SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) {
+    if (kindOf(path) == FileKind::png) {
+        Header flat;
+        takePngHeader(path, readPngHeader(bytesOf(path), path.string()), flat);
+        throwFlat(path, flat.size[0], flat.size[1], "; give the folder of its slices");
+    }
     const itk::ImageIOBase::Pointer io = readerFor(path);
     auto source = std::make_unique<FileSource>(path, io);
     Header& header = source->header;
@@ -221,7 +251,7 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     takeHeader(path, *io, header);
     if (std::min<std::size_t>(dimensions, io->GetNumberOfDimensions()) < 3 && dimensions < 3)
         throwFlat(path, header.size[0], header.size[1],
-                  header.format == "PNG" || header.format == "TIFF" ? "; give the folder of its slices" : "");
+                  header.format == "TIFF" ? "; give the folder of its slices" : "");
     if (header.format == "TIFF") assumeHeight(header);
     header.storedType = facts.storedType;
     header.integral = facts.integral;
@@ -236,9 +266,38 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     return source;
 }
 
-// ---------------------------------------------------------------------------------- a folder of slices
+// ---- a folder of slices
 
 namespace {
+
+// A file that is one slice, or a TIFF of several pages.
+struct Slice {
+    std::string format;
+    Header header;
+    std::function<void(void*)> read;  // its voxels
+};
+
+Slice openPngSlice(const fs::path& path) {
+    Slice slice{"PNG", {}, {}};
+    const auto bytes = std::make_shared<const std::string>(bytesOf(path));
+    takePngHeader(path, readPngHeader(*bytes, path.string()), slice.header);
+    slice.read = [bytes, path](void* out) {
+        const Picture picture = readPng(*bytes, path.string());
+        std::memcpy(out, picture.samples.data(), picture.samples.size());
+    };
+    return slice;
+}
+
+Slice openSlice(const fs::path& path) {
+    if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
+    if (kindOf(path) == FileKind::png) return openPngSlice(path);
+    const itk::ImageIOBase::Pointer io = readerFor(path);
+    factsOf(path, *io);
+    reading(path, [&] { io->ReadImageInformation(); });
+    Slice slice{formatOf(*io), {}, [io](void* out) { readRegion(*io, 0, 1, out); }};
+    takeHeader(path, *io, slice.header);
+    return slice;
+}
 
 class SlicesSource : public VoxelSource {
   public:
@@ -248,20 +307,17 @@ class SlicesSource : public VoxelSource {
         auto* bytes = static_cast<char*>(out);
         for (std::int64_t z = z0; z < z1; ++z) {
             const fs::path& path = slices_[static_cast<std::size_t>(z)];
-            reading(path, [&] { readRegion(*openSlice(path), 0, 1, bytes); });
+            reading(path, [&] {
+                const Slice slice = openSlice(path);
+                requireLikeFirst(path, slice.header);
+                slice.read(bytes);
+            });
             bytes += static_cast<std::size_t>(header.sliceVoxels()) * sizeOf(header.type);
         }
     }
 
   private:
-    // Every slice must be what the first one is.
-    itk::ImageIOBase::Pointer openSlice(const fs::path& path) const {
-        if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
-        const itk::ImageIOBase::Pointer io = readerFor(path);
-        factsOf(path, *io);
-        io->ReadImageInformation();
-        Header slice;
-        takeHeader(path, *io, slice);
+    void requireLikeFirst(const fs::path& path, const Header& slice) const {
         if (slice.size[0] != header.size[0] || slice.size[1] != header.size[1] || slice.size[2] != 1)
             throw InputError(path.string(), fmt::format("is a slice of {} but the first, {}, is {} x {} x 1",
                                                         sizeText(slice.size), slices_[0].filename().string(),
@@ -270,7 +326,6 @@ class SlicesSource : public VoxelSource {
             throw InputError(path.string(), fmt::format("is a slice of {} voxels but the first, {}, holds {}",
                                                         nameOf(slice.type), slices_[0].filename().string(),
                                                         nameOf(header.type)));
-        return io;
     }
 
     std::vector<fs::path> slices_;
@@ -280,24 +335,19 @@ class SlicesSource : public VoxelSource {
 
 SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& slices,
                          const ImageReadOptions& options) {
-    const fs::path& first = slices.front();
-    if (fs::file_size(first) == 0) throw InputError(first.string(), "is empty; expected a slice");
-    auto source = std::make_unique<SlicesSource>(slices);
-    Header& header = source->header;
-    const itk::ImageIOBase::Pointer io = readerFor(first);
-    factsOf(first, *io);
-    reading(first, [&] { io->ReadImageInformation(); });
-    takeHeader(first, *io, header);
-    if (header.size[2] > 1) {  // pages
-        if (slices.size() == 1) return openVolumeFile(first, options);
+    const Slice first = openSlice(slices.front());
+    if (first.header.size[2] > 1) {  // pages
+        if (slices.size() == 1) return openVolumeFile(slices.front(), options);
         throw InputError(folder.string(),
                          fmt::format("holds {} TIFF files of several pages; expected slices; give one "
                                      "of the files",
                                      slices.size()));
     }
-    header.format = formatOf(*io) + " slices";
-    header.size[2] = static_cast<std::int64_t>(slices.size());
-    assumeHeight(header);
+    auto source = std::make_unique<SlicesSource>(slices);
+    source->header = first.header;
+    source->header.format = first.format + " slices";
+    source->header.size[2] = static_cast<std::int64_t>(slices.size());
+    assumeHeight(source->header);
     return source;
 }
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "simplify/self_intersections.h"
 #include "simplify/shapes.h"
-#include "simplify/measure.h"
 
 namespace isowave {
 namespace {

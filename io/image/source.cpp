@@ -1,41 +1,16 @@
+#include "io/image/source.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <map>
+#include <limits>
 #include <type_traits>
 
-#include "io/image/source.h"
+#include "base/text.h"
 
 namespace isowave::imageio {
-
-const char* nameOf(ValueType type) {
-    static constexpr const char* kNames[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
-                                             "uint32", "int64", "uint64", "float32", "float64"};
-    return kNames[static_cast<int>(type)];
-}
-
-std::size_t sizeOf(ValueType type) {
-    static constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-    return kSizes[static_cast<int>(type)];
-}
-
-std::optional<ValueType> valueTypeOf(std::string name) {
-    static const std::map<std::string, ValueType> other = {
-        {"char", ValueType::int8},          {"unsigned char", ValueType::uint8},
-        {"signed char", ValueType::int8},   {"uchar", ValueType::uint8},
-        {"short", ValueType::int16},        {"unsigned short", ValueType::uint16},
-        {"signed short", ValueType::int16}, {"ushort", ValueType::uint16},
-        {"int", ValueType::int32},          {"unsigned int", ValueType::uint32},
-        {"signed int", ValueType::int32},   {"uint", ValueType::uint32},
-        {"float", ValueType::float32},      {"double", ValueType::float64}};
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    for (int i = 0; i <= static_cast<int>(ValueType::float64); ++i)
-        if (name == nameOf(static_cast<ValueType>(i))) return static_cast<ValueType>(i);
-    const auto found = other.find(name);
-    return found == other.end() ? std::nullopt : std::optional(found->second);
-}
 
 std::int64_t VoxelSource::read(std::int64_t z0, std::int64_t z1, float* out) {
     if (header.type == ValueType::float32) return readNative(z0, z1, out), 0;
@@ -111,6 +86,24 @@ std::int64_t convert(ValueType type, const void* in, std::int64_t count, bool sw
             return convertAs<double>(bytes, count, swap, out);
     }
     return 0;
+}
+
+Image imageOf(const Header& header) {
+    Image image;
+    image.size = header.size;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3 step = header.axis[a] * header.spacing[a] + Vec3{};  // -0 + 0 = 0
+        image.indexToWorld.axis[a] = {step.x, step.y, step.z};
+    }
+    image.indexToWorld.origin = {header.origin.x, header.origin.y, header.origin.z};
+    const ValueType stored = header.storedType.value_or(header.type);
+    image.componentType = nameOf(stored);
+    image.integral = header.integral.value_or(isIntegral(stored));
+    image.slope = header.slope;
+    image.intercept = header.intercept;
+    image.format = header.format;
+    image.warnings = header.warnings;
+    return image;
 }
 
 }  // namespace isowave::imageio

@@ -5,12 +5,12 @@
 // an index mesh: CGAL's box_self_intersection_d finds the candidates, exact predicates decide.
 #define CGAL_LINKED_WITH_TBB
 
+#include "simplify/self_intersections.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 
 #include <atomic>
-
-#include "simplify/measure.h"
 
 namespace isowave {
 namespace {

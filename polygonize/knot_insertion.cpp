@@ -1,10 +1,13 @@
-// refineField: knot insertion on a sparse field. A block of 8^3 control points becomes 2^3 fine blocks.
+// Block by block: 8^3 control points become 2^3 fine blocks.
+#include "polygonize/knot_insertion.h"
+
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "polygonize/blocks.h"
-#include "polygonize/polygonize.h"
 
 namespace isowave {
 namespace {
@@ -47,7 +50,7 @@ struct FineBlock {
 };
 using FineBlocks = std::array<FineBlock, 8>;
 
-FineBlocks refineBlock(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin) {
+FineBlocks fineBlocksOf(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin) {
     PaddedBlock padded;
     padded.gather(accessor, origin);
     CoarseValues values, known;  // known: 1 in I. Weights are positive, so a sum > 0 has a term in I
@@ -81,7 +84,7 @@ FineBlocks refineBlock(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, 
     return blocks;
 }
 
-openvdb::FloatTree::Ptr refineControlPoints(const openvdb::FloatTree& coarse, const Progress& progress) {
+openvdb::FloatTree::Ptr fineControlPoints(const openvdb::FloatTree& coarse, const Progress& progress) {
     auto fine = std::make_shared<openvdb::FloatTree>(coarse.background());
     // Regions of one value first, then what lies over them.
     auto tile = coarse.cbeginValueAll();
@@ -97,7 +100,7 @@ openvdb::FloatTree::Ptr refineControlPoints(const openvdb::FloatTree& coarse, co
         progress.check();
         const openvdb::FloatGrid::ConstUnsafeAccessor accessor(coarse);
         for (std::size_t i = range.begin(); i != range.end(); ++i)
-            blocks[i] = refineBlock(accessor, origins[i]);
+            blocks[i] = fineBlocksOf(accessor, origins[i]);
     });
     openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(*fine);
     for (std::size_t i = 0; i < blocks.size(); ++i)
@@ -146,7 +149,7 @@ openvdb::BoolTree::Ptr signsOf(const openvdb::FloatTree& controlPoints, const Pr
 
 }  // namespace
 
-BSplineField refineField(const BSplineField& field, const Progress& progress) {
+BSplineField insertKnots(const BSplineField& field, const Progress& progress) {
     openvdb::FloatTree::ConstPtr coarse = field.controlPoints->constTreePtr();
     if (coarse->hasActiveTiles()) {
         auto voxels = std::make_shared<openvdb::FloatTree>(*coarse);
@@ -158,7 +161,7 @@ BSplineField refineField(const BSplineField& field, const Progress& progress) {
 
     BSplineField fine;
     fine.K = field.K;
-    fine.controlPoints = openvdb::FloatGrid::create(refineControlPoints(*coarse, progress));
+    fine.controlPoints = openvdb::FloatGrid::create(fineControlPoints(*coarse, progress));
     fine.shape = Shape::create(signsOf(fine.controlPoints->tree(), progress));
     for (openvdb::GridBase::Ptr grid :
          {openvdb::GridBase::Ptr(fine.controlPoints), openvdb::GridBase::Ptr(fine.shape)})

@@ -1,4 +1,4 @@
-#include "simplify/budget.h"
+#include "simplify/budget_chooser.h"
 
 #include <fmt/format.h>
 
@@ -8,25 +8,25 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "simplify/sample.h"
+#include "simplify/triangle_subset.h"
 
 namespace isowave {
 namespace {
 
-// A step is thinned to a quarter, a quarter of that and so on, as long as this many times the triangles wanted are
-// left; what is measured starts there.
-constexpr std::int64_t kThinned = 4;
-// Or, for a tolerance, as long as so much of it is left.
-constexpr double kThinningShare = 0.25;
+// A step is decimated to a quarter, a quarter of that and so on, as long as this many times the triangles
+// wanted are left; Collapse starts there.
+constexpr std::int64_t kDecimated = 4;
+// For a tolerance: as long as the decimated mesh is within this share of it.
+constexpr double kDecimationShare = 0.25;
 
-// For a number of triangles: distances that are worth the same (Collapse::Options::alike), as shares of the distance that a
-// collapse by quadrics alone ends with. The one that ends nearest wins.
-constexpr std::array<double, 3> kAlike{0.6, 0.42, 0.3};
+// For a number of triangles: Collapse::Options::errorFloor, as shares of the distance that decimate() ends
+// with. The one that ends nearest wins.
+constexpr std::array<double, 3> kErrorFloors{0.6, 0.42, 0.3};
 
 // A step that is itself so many times as far from level 0 as the best mesh so far is not collapsed.
 constexpr double kHopeless = 2;
 
-// A mesh of so few triangles is not thinned.
+// A mesh of so few triangles is not decimated.
 constexpr std::int64_t kFewTriangles = 2000;
 
 // To rank candidates, so many triangles of level 0 are enough; what is reported is measured from all of them.
@@ -53,7 +53,7 @@ BudgetChooser::BudgetChooser(std::vector<StepMesh> steps, const TopologyLimits& 
     : steps_(std::move(steps)),
       name_(std::move(name)),
       original_(steps_.front().mesh),
-      sample_(everyFew(steps_.front().mesh, kRankingTriangles)) {
+      sample_(evenSubset(steps_.front().mesh, kRankingTriangles)) {
     assert(steps_.front().step == 0);
     for (const StepMesh& step : steps_)
         if (limits.allow(step.topology)) allowed_.push_back(&step);
@@ -79,24 +79,25 @@ struct BudgetChooser::Trial {
     double distance;  // to level 0, from samples
 };
 
-const TriangleMesh& BudgetChooser::thinned(const StepMesh& from, int times, const Progress& progress) {
+const TriangleMesh& BudgetChooser::decimated(const StepMesh& from, int times, const Progress& progress) {
     if (times == 0) return from.mesh;
     const std::pair key{from.step, times};
-    if (const auto found = thinned_.find(key); found != thinned_.end()) return found->second;
-    const TriangleMesh& before = thinned(from, times - 1, progress);
-    return thinned_[key] = thin(before, static_cast<std::int64_t>(before.triangles.size()) / 4, progress);
+    if (const auto found = decimated_.find(key); found != decimated_.end()) return found->second;
+    const TriangleMesh& before = decimated(from, times - 1, progress);
+    return decimated_[key] =
+               decimate(before, static_cast<std::int64_t>(before.triangles.size()) / 4, progress);
 }
 
 BudgetChooser::Trial BudgetChooser::collapsed(const StepMesh& from, std::int64_t triangles,
                                               const Progress& progress) {
     if (from.topology.triangles <= triangles) return {&from, from.mesh, roughDistance(from.mesh, progress)};
     int times = 0;
-    for (std::int64_t left = from.topology.triangles / 4; left >= kThinned * triangles; left /= 4) ++times;
-    const TriangleMesh& start = thinned(from, times, progress);
+    for (std::int64_t left = from.topology.triangles / 4; left >= kDecimated * triangles; left /= 4) ++times;
+    const TriangleMesh& start = decimated(from, times, progress);
     // How far a collapse gets that does not measure distances; one that does gets nearer.
-    const double rough = original_.distanceFrom(thin(start, triangles, progress), 0, progress).max;
+    const double rough = original_.distanceFrom(decimate(start, triangles, progress), 0, progress).max;
     std::optional<Trial> best;
-    for (const double share : kAlike) {
+    for (const double share : kErrorFloors) {
         Collapse collapse(start, steps_.front().mesh, original_, {from.voxel, share * rough}, progress);
         collapse.reduce(triangles, std::numeric_limits<double>::infinity(), progress);
         Trial trial{&from, collapse.mesh(), 0};
@@ -109,22 +110,32 @@ BudgetChooser::Trial BudgetChooser::collapsed(const StepMesh& from, std::int64_t
     return *std::move(best);
 }
 
-BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& progress) {
-    const auto countOf = [](const StepMesh* step) { return step->topology.triangles; };
-    std::vector<const StepMesh*> tried{allowed_.front()};
+// The finest step, the finest one of few triangles more than wanted, and the coarsest one that has as many.
+std::vector<const StepMesh*> BudgetChooser::firstTries(std::int64_t triangles) const {
+    std::vector<const StepMesh*> tries{allowed_.front()};
     const auto tryToo = [&](const StepMesh* step) {
-        if (std::find(tried.begin(), tried.end(), step) == tried.end()) tried.push_back(step);
+        if (std::find(tries.begin(), tries.end(), step) == tries.end()) tries.push_back(step);
     };
-    const StepMesh* coarsest = nullptr;  // of those with enough triangles
-    for (const StepMesh* step : allowed_)
-        if (countOf(step) >= triangles) coarsest = step;
-    for (const StepMesh* step : allowed_)
-        if (countOf(step) <= kThinned * triangles && countOf(step) >= triangles) {
-            tryToo(step);
-            break;
-        }
+    const StepMesh *few = nullptr, *coarsest = nullptr;
+    for (const StepMesh* step : allowed_) {
+        if (step->topology.triangles < triangles) continue;
+        if (!few && step->topology.triangles <= kDecimated * triangles) few = step;
+        coarsest = step;
+    }
+    if (few) tryToo(few);
     if (coarsest) tryToo(coarsest);
+    return tries;
+}
 
+// The next coarser step than all of `tried`, or null.
+const StepMesh* BudgetChooser::coarserThan(const std::vector<const StepMesh*>& tried) const {
+    const auto found = std::find_if(allowed_.begin(), allowed_.end(),
+                                    [&](const StepMesh* step) { return step->step > tried.back()->step; });
+    return found == allowed_.end() ? nullptr : *found;
+}
+
+BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& progress) {
+    std::vector<const StepMesh*> tried = firstTries(triangles);
     std::string list;
     std::optional<Trial> best;
     std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
@@ -138,20 +149,12 @@ BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& 
         Trial trial = collapsed(*tried[i], triangles, progress);
         const auto count = static_cast<std::int64_t>(trial.mesh.triangles.size());
         fewest = std::min(fewest, count);
-        if (count <= triangles) {
-            list += fmt::format("{}{} ({:.3g})", list.empty() ? "" : ", ", tried[i]->step, trial.distance);
-            if (!best || trial.distance < best->distance) best = std::move(trial);
-        } else {
-            list +=
-                fmt::format("{}{} (not below {} triangles)", list.empty() ? "" : ", ", tried[i]->step, count);
-        }
-        // Nothing came down so far: the next coarser one.
+        list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", tried[i]->step,
+                            count <= triangles ? fmt::format("{:.3g}", trial.distance)
+                                               : fmt::format("not below {} triangles", count));
+        if (count <= triangles && (!best || trial.distance < best->distance)) best = std::move(trial);
         if (i + 1 == tried.size() && !best)
-            for (const StepMesh* step : allowed_)
-                if (step->step > tried[i]->step && step->step > tried.back()->step) {
-                    tried.push_back(step);
-                    break;
-                }
+            if (const StepMesh* coarser = coarserThan(tried)) tried.push_back(coarser);
     }
     if (!best)
         throw InputError(name_,
@@ -170,15 +173,16 @@ std::optional<TriangleMesh> BudgetChooser::collapsedWithin(const StepMesh& from,
                                                            const Progress& progress) {
     int times = 0;
     while (from.step == 0 &&
-           static_cast<std::int64_t>(thinned(from, times, progress).triangles.size()) > kFewTriangles &&
-           roughDistance(thinned(from, times + 1, progress), progress) <= kThinningShare * distance)
+           static_cast<std::int64_t>(decimated(from, times, progress).triangles.size()) > kFewTriangles &&
+           roughDistance(decimated(from, times + 1, progress), progress) <= kDecimationShare * distance)
         ++times;
-    // What a collapse costs is measured at points, so the true distance is somewhat larger than the largest cost.
-    // The limit on the cost is raised bit by bit, and the last mesh that is proven to be within is the result.
+    // What a collapse costs is measured at points, so the true distance is somewhat larger than the largest
+    // cost. The limit on the cost is raised bit by bit, and the last mesh that is proven to be within is the
+    // result.
     constexpr std::array<double, 6> kShares{0.25, 0.4, 0.55, 0.7, 0.85, 1.0};
     std::optional<TriangleMesh> within;
     if (from.step == 0) within = from.mesh;
-    Collapse collapse(thinned(from, times, progress), steps_.front().mesh, original_,
+    Collapse collapse(decimated(from, times, progress), steps_.front().mesh, original_,
                       {from.voxel, kShares.front() * distance}, progress);
     for (const double share : kShares) {
         collapse.reduce(4, share * distance, progress);

@@ -1,0 +1,19 @@
+// MetaImage headers, checked before MetaIO reads the file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/image/header.h"
+
+namespace isowave::imageio {
+
+// Throws InputError as header.h says.
+HeaderFacts checkMetaImage(const std::filesystem::path& path);
+
+// The files of the voxels as the header names them, relative to it: names, or one pattern with a %; nothing
+// when the voxels are in the file itself. Throws InputError.
+std::vector<std::string> metaVoxelFiles(const std::filesystem::path& path);
+
+}  // namespace isowave::imageio

@@ -1,0 +1,122 @@
+#include "io/image/open_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <map>
+
+#include "io/image/check.h"
+#include "io/image/dicom.h"
+#include "io/image/itk_reader.h"
+#include "io/image/kind.h"
+#include "io/image/plain.h"
+#include "isowave/error.h"
+
+namespace isowave::imageio {
+namespace fs = std::filesystem;
+
+namespace {
+
+// "slice_2" before "slice_10": runs of digits compare as numbers; ties (01, 1) by the plain text.
+bool naturalLess(const fs::path& a, const fs::path& b) {
+    const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+    const std::string s = a.filename().string(), t = b.filename().string();
+    std::size_t i = 0, j = 0;
+    while (i < s.size() && j < t.size()) {
+        if (digit(s[i]) && digit(t[j])) {
+            while (i < s.size() && s[i] == '0') ++i;
+            while (j < t.size() && t[j] == '0') ++j;
+            std::size_t m = i, n = j;
+            while (m < s.size() && digit(s[m])) ++m;
+            while (n < t.size() && digit(t[n])) ++n;
+            if (m - i != n - j) return m - i < n - j;
+            if (const int order = s.compare(i, m - i, t, j, n - j); order != 0) return order < 0;
+            i = m;
+            j = n;
+        } else if (s[i] != t[j]) {
+            return s[i] < t[j];
+        } else {
+            ++i;
+            ++j;
+        }
+    }
+    if (s.size() - i != t.size() - j) return s.size() - i < t.size() - j;
+    return a < b;
+}
+
+template <class Iterator>
+std::map<FileKind, std::vector<fs::path>> filesByKind(Iterator files) {
+    std::map<FileKind, std::vector<fs::path>> result;
+    for (const fs::directory_entry& entry : files) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_regular_file() || name.starts_with('.') || name == "DICOMDIR") continue;
+        result[kindOf(entry.path())].push_back(entry.path());
+    }
+    for (auto& [kind, paths] : result) std::sort(paths.begin(), paths.end(), naturalLess);
+    return result;
+}
+
+// Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
+SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
+    auto files = filesByKind(fs::directory_iterator(folder));
+    const std::size_t png = files[FileKind::png].size(), tiff = files[FileKind::tiff].size();
+    if (files[FileKind::dicom].empty() && png == 0 && tiff == 0)
+        files = filesByKind(fs::recursive_directory_iterator(folder));
+    if (!files[FileKind::dicom].empty()) return openDicomFolder(folder, files[FileKind::dicom], options);
+    if (png > 0 && tiff > 0)
+        throw InputError(folder.string(),
+                         fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
+    if (png + tiff == 0) throw InputError(folder.string(), "is a folder without DICOM, TIFF or PNG slices");
+    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
+}
+
+SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
+    const std::string name = path.string();
+    if (fs::file_size(path) == 0) throw InputError(name, "is empty; expected an image");
+    if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
+    if (options.raw) return openRaw(path, options);
+    const FileKind kind = kindOf(path);
+    if (kind == FileKind::none)
+        throw InputError(
+            name,
+            "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
+            "voxels give their size and type");
+    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
+}
+
+// Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
+void checkAxes(const std::string& name, const Header& header) {
+    constexpr std::int64_t kMostOnAxis = (std::int64_t(1) << 31) - 1024;
+    for (const std::int64_t n : header.size)
+        if (n > kMostOnAxis)
+            throw InputError(name, fmt::format("its size is {}; at most {} voxels along an axis are handled; "
+                                               "crop or downsample it",
+                                               sizeText(header.size), kMostOnAxis));
+}
+
+}  // namespace
+
+SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
+    const std::string name = path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw InputError(name, "no such file or folder");
+    const bool folder = fs::is_directory(status);
+    if (!folder && !fs::is_regular_file(status)) throw InputError(name, "is neither a file nor a folder");
+    if (folder && options.raw)
+        throw InputError(name,
+                         "is a folder; size and type describe one headerless file; give that file, or leave "
+                         "them out for a folder of slices");
+    try {
+        SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
+        settleGeometry(name, source->header, options);
+        checkAxes(name, source->header);
+        return source;
+    } catch (const fs::filesystem_error& e) {
+        throw InputError(name, "cannot be read: " + oneLine(e.code().message()));
+    }
+}
+
+}  // namespace isowave::imageio

@@ -1,0 +1,17 @@
+// A field on a lattice twice as fine: the same function with more control points.
+#pragma once
+
+#include "isowave/progress.h"
+#include "volume/field.h"
+
+namespace isowave {
+
+// The same function on a lattice twice as fine on each axis, by knot insertion: evaluate(insertKnots(f), 2x)
+// = evaluate(f, x) to float32 rounding of the new control points, and world positions stay. On each axis,
+// with c coarse and coarse j at fine 2j,
+//   fine 2i = (c[i-1] + 6 c[i] + c[i+1]) / 8,   fine 2i+1 = (c[i] + c[i+1]) / 2.
+// I becomes the control points that depend on one in I (or are no longer constant); K stays. Signs of the
+// shape are those of F at the fine lattice points, there being no input between the coarse ones.
+BSplineField insertKnots(const BSplineField& field, const Progress& progress = {});
+
+}  // namespace isowave
