@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "isowave/mesh.h"
 #include "io/mesh/view.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "volume/image_statistics.h"
 #include "isowave/ladder.h"
 #include "isowave/measure.h"
 #include "isowave/pyramid.h"
+#include "volume/image_statistics.h"
 
 namespace isowave::tools {
 

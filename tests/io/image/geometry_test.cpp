@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "isowave/mesh.h"
 #include "io/image/itk.h"
 #include "isowave/image.h"
+#include "isowave/mesh.h"
 
 namespace isowave {
 namespace {
