@@ -44,14 +44,19 @@ void Command::declareJson() {
                     json_);
 }
 
-void Command::tell(Console& console, const std::string& text, const std::string& json) const {
+void Command::openJson() {
+    if (!jsonToFile() || jsonFile_) return;
+    jsonFolders_.emplace(*json_);
+    jsonFile_.emplace(*json_);
+}
+
+void Command::tell(Console& console, const std::string& text, const std::string& json) {
     console.progress().check();
-    if (json_ && !jsonToStandardOutput()) {
-        OutputFile folders(*json_);
-        AtomicFile file(*json_);
-        writeWhole(file, json);
-        file.commit();
-        folders.commit();
+    openJson();
+    if (jsonFile_) {
+        writeWhole(*jsonFile_, json);
+        jsonFile_->commit();
+        jsonFolders_->commit();
     }
     console.print(jsonToStandardOutput() ? json : text);
 }

@@ -10,6 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/atomic_file.h"
+#include "tools/output.h"
+
 namespace isowave::tools {
 
 class Console;
@@ -79,6 +82,8 @@ class Command {
 
   private:
     Description description_;
+    std::optional<OutputFile> jsonFolders_;
+    std::optional<AtomicFile> jsonFile_;
 
   protected:
     OptionList options_;
@@ -91,9 +96,12 @@ class Command {
     void declareThreads();
     void declareQuiet();
     bool jsonToStandardOutput() const { return json_ && *json_ == "-"; }
+    bool jsonToFile() const { return json_ && *json_ != "-"; }
+    // Finds out at once whether the file of --json can be written, before there are other results. Throws OperationError.
+    void openJson();
     // What the command has to tell: `text` to standard output and, with --json, `json` to its file or, for -, in place of the
     // text. Nothing is told once a stop was asked for. Throws OperationError.
-    void tell(Console& console, const std::string& text, const std::string& json) const;
+    void tell(Console& console, const std::string& text, const std::string& json);
 };
 
 }  // namespace isowave::tools

@@ -106,13 +106,30 @@ TEST(OnePlace, IsNotForTwoResults) {
          {lod("out", "out"), lod("out", "there/../out"), lod("there", "there/there_L0.ply"),
           lod("there", "there/report.json"), lod("there", "link.json"),
           Arguments{"curves", path("a.nrrd"), "-o", path("out"), "--sheet", path("x"), "--json", path("x")},
-          Arguments{"reverse", path("a.obj"), "-o", path("b.obj"), "--details", path("there/../b.obj")}}) {
+          Arguments{"reverse", path("a.obj"), "-o", path("b.obj"), "--details", path("there/../b.obj")},
+          Arguments{"reverse", path("a.obj"), "-o", path("b.obj"), "--details", path("d"), "--json",
+                    path("d")},
+          Arguments{"curve-levels", ISOWAVE_TEST_DATA "/coast/iceland.txt", "-o", path("there"), "--json",
+                    path("there/level_0.txt")}}) {
         const Result result = isowave(arguments);
         EXPECT_EQ(result.exitCode, 2) << arguments.back() << ": " << result.err;
         EXPECT_NE(result.err.find("would get two results"), std::string::npos) << result.err;
         EXPECT_EQ(folder.snapshot(), before) << arguments.back();
     }
     succeed({"lod", path("a.nrrd"), "--iso", "0", "-o", path("there"), "--json", path("there/other.json")});
+}
+
+// A file for JSON that cannot be written is found before there are other results.
+TEST(Json, ThatCannotBeWrittenLeavesNothingElseBehind) {
+    const Folder folder;
+    std::ofstream(folder / "file") << "in the way";
+    const auto before = folder.snapshot();
+    const Result result =
+        isowave({"curve-levels", ISOWAVE_TEST_DATA "/coast/iceland.txt", "-o", (folder / "out").string(),
+                 "--json", (folder / "file/report.json").string()});
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_EQ(result.errorLines(), 1) << result.err;
+    EXPECT_EQ(folder.snapshot(), before);
 }
 
 }  // namespace

@@ -265,11 +265,10 @@ int CurvesCommand::run(Console& console) {
     refuseContradictions();
     refuseForeignOptions();
     OutputFolder out(*output_, Inputs(arguments));
-    const bool hasCopy = json_ && !jsonToStandardOutput();
-    if (hasCopy) out.keepFree(*json_);
+    if (jsonToFile()) out.keepFree(*json_);
     if (draw_.sheet) out.keepFree(*draw_.sheet);
     std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
-    if (hasCopy) copy.emplace(*json_);
+    if (jsonToFile()) copy.emplace(*json_);
 
     std::string sheetText;
     const CurvesReport report = climb(out, console, sheetText);

@@ -116,7 +116,7 @@ class Info : public Command {
 
   private:
     template <class Report>
-    void show(Console& console, const Report& info) const {
+    void show(Console& console, const Report& info) {
         tell(console, textOf(info), jsonOf(info));
     }
 

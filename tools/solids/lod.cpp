@@ -142,7 +142,7 @@ void Lod::declareBudgets() {
 }
 
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
-    if (json_ && !jsonToStandardOutput()) out.keepFree(*json_);
+    if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
 }
@@ -155,7 +155,7 @@ int Lod::run(Console& console) {
     const MeshNames names(out.name(), format, levels_, budgets_);
     refuseTaken(names, out);
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
-    if (json_ && !jsonToStandardOutput()) copy.emplace(*json_);
+    if (jsonToFile()) copy.emplace(*json_);
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
         MeshWriter writer{names, format, space_.of(solid), out, {}};

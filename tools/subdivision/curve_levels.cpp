@@ -91,6 +91,8 @@ int CurveLevels::run(Console& console) {
     if (width_ && !mask_) throw UsageError("--width: belongs to --mask; write --scheme cubic-7 otherwise");
     if (scheme_) curveScheme(*scheme_);  // a wrong name is not the file's fault
     OutputFolder out(*output_, Inputs(arguments));
+    if (jsonToFile()) out.keepFree(*json_);
+    openJson();
     const CurveFile file = CurveFile::read(arguments[0]);
     const CurveReport report = reported(file);
     writeFiles(out, filesOf(report, file, arguments[0].extension().string()));

@@ -107,6 +107,7 @@ RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
 
 int Rebuild::run(Console& console) {
     refuseContradictions();
+    openJson();
     Hierarchy hierarchy = loadHierarchy(*details_, depth_);
     requireBase(arguments[0], *details_, hierarchy);
     const RebuildOptions options = rebuildOptions(hierarchy);

@@ -69,6 +69,8 @@ Relief::Relief()
 int Relief::run(Console& console) {
     if (scheme_) surfaceScheme(*scheme_);  // a wrong name is not the file's fault
     OutputFolder out(*output_, Inputs(arguments));
+    if (jsonToFile()) out.keepFree(*json_);
+    openJson();
     const auto& input = arguments[0];
     const Grid grid = readGrid(input);
     report_.scheme = scheme_.value_or(report_.scheme);

@@ -6,7 +6,6 @@
 #include "subdivision/meshes/mesh_files.h"
 #include "tools/commands.h"
 #include "tools/console.h"
-#include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/hierarchy.h"
 #include "tools/subdivision/mesh_options.h"
@@ -24,7 +23,6 @@ class Reverse : public Command {
 
   private:
     DecomposeOptions decomposeOptions(const MeshScheme& scheme) const;
-    void refuseBadPlaces() const;
     void write(const Hierarchy& hierarchy) const;
 
     int depth_ = kAllLevels;
@@ -54,8 +52,7 @@ Reverse::Reverse()
                    "loop, butterfly: refined, trial, wide",
                    [this](const std::string& v) { variant_ = v; });
     declareCrease(options_, creaseAngle_);
-    options_.value("--details", "FILE", "", "the file that gets the details",
-                   [this](const std::string& v) { details_ = place(v); });
+    options_.result("--details", "FILE", "the file that gets the details", details_);
     declareQuiet();
 }
 
@@ -68,13 +65,6 @@ DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
         throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme.name) +
                          " has no creases");
     return options;
-}
-
-void Reverse::refuseBadPlaces() const {
-    polygonFormatOf(*output_);  // a wrong name is found before the work
-    if (!details_) return;
-    Inputs(arguments).refuse(*details_);
-    refuseSamePlace(*output_, *details_);
 }
 
 // The base and, when asked for, the details: both or none.
@@ -101,7 +91,8 @@ int Reverse::run(Console& console) {
     const auto& input = arguments[0];
     const MeshScheme& scheme = meshScheme(scheme_);
     const DecomposeOptions options = decomposeOptions(scheme);
-    refuseBadPlaces();
+    polygonFormatOf(*output_);  // a wrong name is found before the work
+    openJson();
     const PolygonMesh mesh = readPolygonMesh(input);
     const Hierarchy hierarchy = [&] {
         try {

@@ -51,6 +51,7 @@ PolygonMesh Subdivide::coarse() const {
 int Subdivide::run(Console& console) {
     const MeshScheme& scheme = meshScheme(scheme_);
     polygonFormatOf(*output_);  // a wrong name is found before the work
+    openJson();
     const PolygonMesh before = coarse();
     const PolygonMesh mesh = [&] {
         try {
