@@ -76,14 +76,16 @@ void take(const ParsedCommand& parsed) {
 }
 
 void parse(CLI::App& app, int argc, const char* const* argv) {
+    const bool named = argc > 1 && argv[1][0] != '-';
+    const std::string help =
+        "; see isowave " + (named ? std::string(argv[1]) + " " : std::string()) + "--help";
     try {
         app.parse(argc, argv);
     } catch (const CLI::ArgumentMismatch& error) {  // "--iso: At Most 1 required but received 2"
         const std::string text = oneLine(error.what());
-        throw UsageError(text.substr(0, text.find(':')) +
-                         ": expects one value, given once; see isowave --help");
+        throw UsageError(text.substr(0, text.find(':')) + ": expects one value, given once" + help);
     } catch (const CLI::ParseError& error) {
-        throw UsageError(oneLine(error.what()) + "; see isowave --help");
+        throw UsageError(oneLine(error.what()) + help);
     }
 }
 

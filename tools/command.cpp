@@ -1,6 +1,7 @@
 #include "tools/command.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "base/atomic_file.h"
 #include "tools/console.h"
@@ -8,6 +9,13 @@
 #include "tools/output.h"
 
 namespace isowave::tools {
+namespace {
+
+std::filesystem::path placeOfReport(const std::string& text) {
+    return text == "-" ? std::filesystem::path("-") : place(text);
+}
+
+}  // namespace
 
 void OptionList::value(std::string_view names, std::string_view metavar, std::string_view fallback,
                        std::string_view help, std::function<void(const std::string&)> apply) {
@@ -18,10 +26,29 @@ void OptionList::flag(std::string_view names, std::string_view help, bool& set) 
     options_.push_back({names, "", "", help, [&set](const std::string&) { set = true; }});
 }
 
+void OptionList::input(std::string_view names, std::string_view help,
+                       std::optional<std::filesystem::path>& set) {
+    options_.push_back({names, "FILE", "", help, [&set](const std::string& text) { set = place(text); }});
+    inputs_.push_back(&set);
+}
+
+std::vector<std::filesystem::path> OptionList::inputs() const {
+    std::vector<std::filesystem::path> given;
+    for (const auto* input : inputs_)
+        if (*input) given.push_back(**input);
+    return given;
+}
+
+void OptionList::result(std::string_view names, std::string_view metavar, std::string_view help,
+                        std::optional<std::filesystem::path>& set, PlaceOf placeOf) {
+    options_.push_back(
+        {names, metavar, "", help, [&set, placeOf](const std::string& text) { set = placeOf(text); }});
+    results_.push_back(&set);
+}
+
 void OptionList::result(std::string_view names, std::string_view metavar, std::string_view help,
                         std::optional<std::filesystem::path>& set) {
-    options_.push_back({names, metavar, "", help, [&set](const std::string& text) { set = place(text); }});
-    results_.push_back(&set);
+    result(names, metavar, help, set, place);
 }
 
 std::vector<std::filesystem::path> OptionList::results() const {
@@ -40,8 +67,21 @@ void Command::declareOutput(std::string_view help) { options_.result("-o,--outpu
 
 void Command::declareJson() {
     options_.result("--json", "FILE",
-                    "the report as JSON goes to this file; - is standard output, in place of the text",
-                    json_);
+                    "the report as JSON goes to this file; - is standard output, in place of the text", json_,
+                    placeOfReport);
+}
+
+// `check --json a.ply b.ply` has taken a mesh for the name of the report.
+void Command::refuseToReplaceWhatIsNoReport() const {
+    std::error_code ignored;
+    if (!jsonToFile() || !std::filesystem::is_regular_file(*json_, ignored)) return;
+    std::string start;
+    std::ifstream file(*json_);
+    for (char c; start.size() < 10 && file.get(c);)
+        if (c != ' ' && c != '\n') start += c;
+    if (!start.empty() && start != "{\"version\"")
+        throw UsageError("--json: takes the name of a file to write, and " + json_->string() +
+                         " exists and is no report; choose another name, or - to print");
 }
 
 void Command::openJson() {

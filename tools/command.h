@@ -37,17 +37,24 @@ class OptionList {
     void value(std::string_view names, std::string_view metavar, std::string_view fallback,
                std::string_view help, std::function<void(const std::string&)> apply);
     void flag(std::string_view names, std::string_view help, bool& set);
+    // A file that the command reads; main() sees to it that no result takes its place.
+    void input(std::string_view names, std::string_view help, std::optional<std::filesystem::path>& set);
     // A file or folder that the command writes; main() sees to it that no input and no other result has its place.
+    using PlaceOf = std::filesystem::path (*)(const std::string& text);
+    void result(std::string_view names, std::string_view metavar, std::string_view help,
+                std::optional<std::filesystem::path>& set, PlaceOf placeOf);
     void result(std::string_view names, std::string_view metavar, std::string_view help,
                 std::optional<std::filesystem::path>& set);
 
     const std::vector<Option>& all() const { return options_; }
+    // The inputs whose options were given.
+    std::vector<std::filesystem::path> inputs() const;
     // The results whose options were given.
     std::vector<std::filesystem::path> results() const;
 
   private:
     std::vector<Option> options_;
-    std::vector<const std::optional<std::filesystem::path>*> results_;
+    std::vector<const std::optional<std::filesystem::path>*> inputs_, results_;
 };
 
 class Command {
@@ -68,6 +75,8 @@ class Command {
     std::string_view name() const { return description_.name; }
     const OptionList& options() const { return options_; }
     int argumentCount() const;
+    // An existing file that does not begin as reports do, {"version", is not replaced by --json. Throws UsageError.
+    void refuseToReplaceWhatIsNoReport() const;
     // Whether -o must be given.
     virtual bool needsOutput() const { return false; }
     bool hasOutput() const { return output_.has_value(); }

@@ -23,11 +23,14 @@ namespace tools = isowave::tools;
 
 // Before anything is opened: a result never takes the place of what it is made from, nor of another result.
 void refuseToReplace(const tools::Command& command) {
-    const tools::Inputs inputs(command.arguments);
+    std::vector<std::filesystem::path> read = command.arguments;
+    for (const auto& place : command.options().inputs()) read.push_back(place);
+    const tools::Inputs inputs(read);
     const std::vector<std::filesystem::path> results = command.options().results();
     for (const auto& place : results) inputs.refuse(place);
     for (std::size_t i = 0; i < results.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) tools::refuseSamePlace(results[j], results[i]);
+    command.refuseToReplaceWhatIsNoReport();
 }
 
 int run(int argc, char** argv) {

@@ -55,6 +55,8 @@ std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t hig
 
 std::filesystem::path place(const std::string& text) {
     if (text.empty()) throw UsageError("the name is empty");
+    if (text.front() == '-')
+        throw UsageError("'" + text + "' is no name of a file here; put ./ in front if it is one");
     return text;
 }
 

@@ -19,7 +19,7 @@ double number(const std::string& text);    // finite
 double positive(const std::string& text);  // above 0
 // low <= value <= high
 std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high);
-// A file's name, not empty.
+// A file's or folder's name: not empty, and nothing that looks like an option ("--quiet" where a name was left out).
 std::filesystem::path place(const std::string& text);
 // A..B, A.., ..B or A: both ends included.
 StepRange range(const std::string& text);

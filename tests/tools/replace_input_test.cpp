@@ -119,6 +119,37 @@ TEST(OnePlace, IsNotForTwoResults) {
     succeed({"lod", path("a.nrrd"), "--iso", "0", "-o", path("there"), "--json", path("there/other.json")});
 }
 
+// Whoever forgets that --json takes a name would lose a mesh otherwise.
+TEST(Json, NeverTakesThePlaceOfWhatIsNoReport) {
+    const Folder folder;
+    const std::string mesh = ISOWAVE_TEST_DATA "/meshes/pinion.off";
+    for (const char* name : {"a.off", "b.off", "c.json"}) fs::copy_file(mesh, folder / name);
+    const auto before = folder.snapshot();
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    for (const Arguments& arguments : {Arguments{"check", "--json", path("a.off"), path("b.off")},
+                                       Arguments{"info", path("a.off"), "--json", path("c.json")},
+                                       Arguments{"check", path("a.off"), "--json", "--quiet"}}) {
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, 2) << result.err;
+        EXPECT_NE(result.err.find("--json: "), std::string::npos) << result.err;
+        EXPECT_EQ(folder.snapshot(), before);
+    }
+    for (int run = 0; run < 2; ++run)  // a report gives way to a report
+        succeed({"check", path("a.off"), "--json", path("report.json")});
+}
+
+TEST(Rebuild, NeverReplacesItsDetailsByAReport) {
+    const Folder folder;
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    std::ofstream(folder / "d") << "{\"version\"";
+    for (const char* option : {"--details", "--edited"}) {
+        const Result result = isowave(
+            {"rebuild", path("base.obj"), option, path("d"), "-o", path("again.obj"), "--json", path("d")});
+        EXPECT_EQ(result.exitCode, 2) << result.err;
+        EXPECT_NE(result.err.find("is what this command reads"), std::string::npos) << result.err;
+    }
+}
+
 // A file for JSON that cannot be written is found before there are other results.
 TEST(Json, ThatCannotBeWrittenLeavesNothingElseBehind) {
     const Folder folder;

@@ -69,10 +69,8 @@ Rebuild::Rebuild()
     declareJson();
     declareDepth(options_, "all", "how many subdivisions finer than BASE; finer details are not even read",
                  depth_);
-    options_.value("--details", "FILE", "", "the details that reverse has written; needed",
-                   [this](const std::string& v) { details_ = place(v); });
-    options_.value("--edited", "FILE", "", "BASE with moved vertices, which takes its place",
-                   [this](const std::string& v) { edited_ = place(v); });
+    options_.input("--details", "the details that reverse has written; needed", details_);
+    options_.input("--edited", "BASE with moved vertices, which takes its place", edited_);
     options_.value("--frames", "global|local", "global",
                    "details keep their direction in space, or turn with the surface (--edited)",
                    [this](const std::string& v) {
@@ -92,7 +90,6 @@ void Rebuild::refuseContradictions() const {
     if (frames_ && !edited_) throw UsageError("--frames: belongs to --edited");
     if (threshold_ && keep_) throw UsageError("--threshold and --keep: give one of them");
     polygonFormatOf(*output_);  // a wrong name is found before the work
-    Inputs({*details_, edited_.value_or(*details_)}).refuse(*output_);
 }
 
 RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
