@@ -1,12 +1,14 @@
 // polygonize = sample -> cross -> place -> connect, each a parallel pass over blocks of 8x8x8 lattice points.
 //
 //   sample   the sign of every lattice point of the block
-//   cross    which of the block's lattice edges the surface crosses, and how many triangles its cells have
+//   cross    which of the block's lattice edges the surface crosses, what the field decides in cells whose corners leave a
+//            choice, and how many triangles there are
 //            (number: prefix sums over the blocks, so that every vertex and triangle has its place)
-//   place    one vertex on each crossed edge
+//   place    one vertex on each crossed edge, and those inside cells
 //   connect  triangles between them
 // The block of a lattice edge is that of its low end; the block of a cell that of its lowest corner.
-// invariant: a sign is computed once and stored; every later pass reads it, so neighbours cannot disagree.
+// invariant: a sign is computed once and stored; every later pass reads it, so neighbours cannot disagree. The sign in the
+// middle of a face is computed by both its cells, exactly.
 //
 // F here is the field less the iso-value: a ShiftedField hands out its control points, c - iso.
 #include "polygonize/polygonize.h"
@@ -18,10 +20,12 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "isowave/error.h"
 #include "polygonize/blocks.h"
 #include "polygonize/cell_table.h"
+#include "volume/cubic_weights.h"
 
 namespace isowave {
 namespace {
@@ -29,6 +33,13 @@ namespace {
 using openvdb::Coord;
 using openvdb::Vec3d;
 using Word = std::uint64_t;
+
+// A cell whose corners leave a choice, and the field's.
+struct DecidedCell {
+    std::uint16_t cell = 0;        // 64x + 8y + z in the block
+    std::uint16_t firstOnRay = 0;  // its vertices on rays, counted from the block's first
+    CellDecision decision;
+};
 
 struct Block {
     Coord origin;
@@ -38,8 +49,10 @@ struct Block {
     // lattice points, with those of its cells, all have that sign and which is not in the list.
     std::array<std::int32_t, 8> ahead{};
     std::int64_t firstVertex = 0, firstTriangle = 0;  // counts until `number` sums them up
+    int onEdges = 0;                                  // of its vertices; those on rays follow
     // The number, within the block, of the vertex of a word's lowest crossed edge.
     std::array<std::array<std::uint16_t, kBlock>, 3> firstOfWord{};
+    std::vector<DecidedCell> decided;  // in the order of the cells
 };
 constexpr std::int32_t kOutside = -1, kInside = -2;
 
@@ -201,7 +214,81 @@ void forEachMixedCell(const std::vector<Block>& blocks, const Block& block, cons
     }
 }
 
-void cross(std::vector<Block>& blocks, const Progress& progress) {
+// Exact multiples of the field in the middles of faces and cells of a block: on an axis (1,23,23,1)/48 halfway between
+// lattice points, (1,4,1)/6 on one. Sums of weights have 15 bits, control points 24: exact in double unless neighbours differ by
+// more than 2^14 in size, so that both cells of a face see one sign.
+class Middles {
+  public:
+    Middles(const ShiftedField& field, const Coord& origin) { field.gather(origin, padded_); }
+
+    // cell: its lowest corner in the block; face as in a CellTable.
+    bool insideAtFace(const std::array<int, 3>& cell, int face) const {
+        std::array<int, 3> from = cell;
+        from[face / 2] += face % 2;
+        std::array<const double*, 3> weights{kHalfway, kHalfway, kHalfway};
+        weights[face / 2] = kOnPoint;
+        return sum(from, weights) < 0;
+    }
+    bool insideAtMiddle(const std::array<int, 3>& cell) const {
+        return sum(cell, {kHalfway, kHalfway, kHalfway}) < 0;
+    }
+
+  private:
+    static constexpr double kHalfway[4] = {1, 23, 23, 1}, kOnPoint[4] = {1, 4, 1, 0};
+
+    double sum(const std::array<int, 3>& from, const std::array<const double*, 3>& weights) const {
+        // The plane two beyond a face is not asked for: it may lie outside the block's margin.
+        const auto taps = [&](int axis) { return weights[axis] == kOnPoint ? 3 : 4; };
+        double total = 0;
+        for (int x = 0; x < taps(0); ++x)
+            for (int y = 0; y < taps(1); ++y)
+                for (int z = 0; z < taps(2); ++z)
+                    total += weights[0][x] * weights[1][y] * weights[2][z] *
+                             padded_.at(from[0] + x - 1, from[1] + y - 1, from[2] + z - 1);
+        return total;
+    }
+    PaddedBlock padded_;
+};
+
+CellDecision decide(const Middles& middles, const std::array<int, 3>& cell, unsigned pattern) {
+    CellDecision decision;
+    for (unsigned faces = cellTable().ambiguousFaces(pattern); faces != 0; faces &= faces - 1) {
+        const int face = std::countr_zero(faces);
+        if (middles.insideAtFace(cell, face)) decision.joined |= static_cast<std::uint8_t>(1 << face);
+    }
+    if (cellTable().needsMiddle(pattern, decision.joined))
+        decision.middleInside = middles.insideAtMiddle(cell);
+    return decision;
+}
+
+constexpr std::uint16_t cellNumber(int x, int y, int z) {
+    return static_cast<std::uint16_t>((x * kBlock + y) * kBlock + z);
+}
+
+// Counts the block's vertices and triangles, and decides about its cells.
+void countCells(const std::vector<Block>& blocks, const ShiftedField& field, Block& block) {
+    const CellTable& table = cellTable();
+    std::optional<Middles> middles;
+    block.decided.clear();
+    std::size_t triangles = 0;
+    unsigned onRays = 0;
+    forEachMixedCell(blocks, block, [&](int x, int y, int z, unsigned pattern) {
+        if (table.isPlain(pattern)) {
+            triangles += table.plain(pattern).triangles.size();
+            return;
+        }
+        if (!middles) middles.emplace(field, block.origin);
+        const CellDecision decision = decide(*middles, {x, y, z}, pattern);
+        const CellCase& cell = table.at(pattern, decision);
+        block.decided.push_back({cellNumber(x, y, z), static_cast<std::uint16_t>(onRays), decision});
+        triangles += cell.triangles.size();
+        onRays += static_cast<unsigned>(std::popcount(cell.rays));
+    });
+    block.firstVertex += onRays;
+    block.firstTriangle = static_cast<std::int64_t>(triangles);
+}
+
+void cross(std::vector<Block>& blocks, const ShiftedField& field, const Progress& progress) {
     forEachBlock(blocks.size(), progress, [&](std::size_t i) {
         Block& block = blocks[i];
         const NearSigns signs(blocks, block);
@@ -211,17 +298,15 @@ void cross(std::vector<Block>& blocks, const Progress& progress) {
             block.crossed[1][x] = here ^ signs.plane(x, 1, 0);
             block.crossed[2][x] = here ^ signs.plane(x, 0, 1);
         }
-        int vertices = 0, triangles = 0;
+        int vertices = 0;
         for (int axis = 0; axis < 3; ++axis)
             for (int x = 0; x < kBlock; ++x) {
                 block.firstOfWord[axis][x] = static_cast<std::uint16_t>(vertices);
                 vertices += std::popcount(block.crossed[axis][x]);
             }
-        forEachMixedCell(blocks, block, [&](int, int, int, unsigned pattern) {
-            triangles += cellTable().cases[pattern].triangleCount;
-        });
+        block.onEdges = vertices;
         block.firstVertex = vertices;
-        block.firstTriangle = triangles;
+        countCells(blocks, field, block);
     });
 }
 
@@ -348,9 +433,10 @@ class ToWorld {
     bool mirrors_ = false;
 };
 
+constexpr double kVanishing = 1e-9;  // a gradient, of the control points
+
 // The gradient at the edge's root, or, where it vanishes, the way out along the edge.
 Vec3d gradientAt(const EdgeField& f, double t, int axis, bool insideAtLow) {
-    constexpr double kVanishing = 1e-9;  // of the control points
     Vec3d gradient;
     gradient[axis] = f.value.slope(t);
     gradient[(axis + 1) % 3] = f.alongU(t);
@@ -362,6 +448,73 @@ Vec3d gradientAt(const EdgeField& f, double t, int axis, bool insideAtLow) {
     return gradient;
 }
 
+// F and its gradient anywhere in a cell of the block.
+struct CellField {
+    double value = 0;
+    Vec3d gradient{0.0};
+    double scale = 0;
+};
+CellField fieldIn(const PaddedBlock& block, const std::array<int, 3>& cell, const Vec3d& at) {
+    std::array<std::array<double, 4>, 3> w, d;
+    for (int a = 0; a < 3; ++a) {
+        const double t = at[a] - cell[a], u = 1 - t;
+        w[a] = cubicWeights(t);
+        d[a] = {-u * u / 2, (3 * t - 4) * t / 2, (4 - 3 * u) * u / 2, t * t / 2};
+    }
+    CellField f;
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = 0; z < 4; ++z) {
+                const double c = block.at(cell[0] + x - 1, cell[1] + y - 1, cell[2] + z - 1);
+                f.value += w[0][x] * w[1][y] * w[2][z] * c;
+                f.gradient += c * Vec3d(d[0][x] * w[1][y] * w[2][z], w[0][x] * d[1][y] * w[2][z],
+                                        w[0][x] * w[1][y] * d[2][z]);
+                f.scale = std::max(f.scale, std::abs(c));
+            }
+    return f;
+}
+
+// How far along the ray from the middle to a corner F changes sign, 0 to 1, by halving: inside or outside at the middle, the
+// other at the corner.
+double rootOnRay(const PaddedBlock& block, const std::array<int, 3>& cell, const Vec3d& middle,
+                 const Vec3d& corner, bool middleInside, double tolerance) {
+    double low = 0, high = 1;
+    for (int step = 0; high - low > std::max(tolerance, 1e-15) && step < 60; ++step) {
+        const double t = (low + high) / 2;
+        const bool inside = fieldIn(block, cell, middle + (corner - middle) * t).value < 0;
+        (inside == middleInside ? low : high) = t;
+    }
+    return (low + high) / 2;
+}
+
+// Calls put(position in the block, way out along the ray) for each vertex on a ray of a decided cell.
+template <class Put>
+void placeOnRays(const PaddedBlock& padded, const DecidedCell& decided, unsigned rays,
+                 const PolygonizeOptions& options, const Put& put) {
+    const std::array<int, 3> cell{decided.cell / (kBlock * kBlock), decided.cell / kBlock % kBlock,
+                                  decided.cell % kBlock};
+    const Vec3d middle = Vec3d(cell[0], cell[1], cell[2]) + Vec3d(0.5);
+    const bool inside = decided.decision.middleInside;
+    forEachBit(rays, [&](int c) {
+        const Vec3d corner(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2));
+        const double t = rootOnRay(padded, cell, middle, corner, inside, options.rootTolerance);
+        const double kept = std::clamp(t, options.rootMargin, 1 - options.rootMargin);
+        const Vec3d at = middle + (corner - middle) * kept;
+        CellField f = fieldIn(padded, cell, at);
+        if (!(f.gradient.length() > kVanishing * f.scale)) f.gradient = (corner - middle) * (inside ? 1 : -1);
+        put(at, f.gradient);
+    });
+}
+
+// The pattern of a cell of the block.
+unsigned patternOf(const NearSigns& signs, const DecidedCell& decided) {
+    const int x = decided.cell / (kBlock * kBlock), bit = decided.cell % (kBlock * kBlock);
+    unsigned pattern = 0;
+    for (int c = 0; c < 8; ++c)
+        pattern |= static_cast<unsigned>(signs.plane(x + (c & 1), c >> 1 & 1, c >> 2) >> bit & 1) << c;
+    return pattern;
+}
+
 void place(const std::vector<Block>& blocks, const ShiftedField& field, const ToWorld& toWorld,
            const PolygonizeOptions& options, const Progress& progress, TriangleMesh& mesh) {
     forEachBlock(blocks.size(), progress, [&](std::size_t i) {
@@ -369,6 +522,11 @@ void place(const std::vector<Block>& blocks, const ShiftedField& field, const To
         std::size_t vertex = static_cast<std::size_t>(block.firstVertex);
         PaddedBlock padded;
         field.gather(block.origin, padded);
+        const auto put = [&](const Vec3d& at, const Vec3d& gradient) {
+            mesh.points[vertex] = toWorld.point(block.origin.asVec3d() + at);
+            mesh.normals[vertex] = toWorld.normal(gradient);
+            ++vertex;
+        };
         for (int axis = 0; axis < 3; ++axis)
             for (int x = 0; x < kBlock; ++x)
                 forEachBit(block.crossed[axis][x], [&](int bit) {
@@ -376,40 +534,50 @@ void place(const std::vector<Block>& blocks, const ShiftedField& field, const To
                     const bool insideAtLow = (block.inside[x] >> bit & 1) != 0;
                     const EdgeField f = edgeField(padded, x, y, z, axis);
                     const double t = rootOf(f.value, insideAtLow, options.rootTolerance);
-                    Vec3d at = block.origin.offsetBy(x, y, z).asVec3d();
+                    Vec3d at(x, y, z);
                     at[axis] += std::clamp(t, options.rootMargin, 1 - options.rootMargin);
-                    mesh.points[vertex] = toWorld.point(at);
-                    mesh.normals[vertex] = toWorld.normal(gradientAt(f, t, axis, insideAtLow));
-                    ++vertex;
+                    put(at, gradientAt(f, t, axis, insideAtLow));
                 });
+        if (block.decided.empty()) return;
+        const NearSigns signs(blocks, block);
+        for (const DecidedCell& decided : block.decided)
+            placeOnRays(padded, decided, cellTable().at(patternOf(signs, decided), decided.decision).rays,
+                        options, put);
     });
 }
 
 // ---- connect
 
+// The number of the vertex on an edge of the block's cell (x, y, z).
+std::uint32_t vertexOnEdge(const std::vector<Block>& blocks, const Block& block, int x, int y, int z, int e) {
+    const CellEdge& edge = cellTable().edge(e);
+    const int ex = x + edge.x, ey = y + edge.y, ez = z + edge.z;
+    // A crossed edge has its low end in a listed block: an unlisted one's edges have no sign change.
+    const Block& owner = blocks[block.ahead[ex / kBlock * 4 + ey / kBlock * 2 + ez / kBlock]];
+    const int word = ex % kBlock, bit = ey % kBlock * kBlock + ez % kBlock;
+    const Word before = owner.crossed[edge.axis][word] & ((Word{1} << bit) - 1);
+    return static_cast<std::uint32_t>(owner.firstVertex + owner.firstOfWord[edge.axis][word] +
+                                      std::popcount(before));
+}
+
 void connect(const std::vector<Block>& blocks, bool mirrored, const Progress& progress, TriangleMesh& mesh) {
     const CellTable& table = cellTable();
     forEachBlock(blocks.size(), progress, [&](std::size_t i) {
         const Block& block = blocks[i];
-        std::size_t out = static_cast<std::size_t>(block.firstTriangle);
+        std::size_t out = static_cast<std::size_t>(block.firstTriangle), nextDecided = 0;
         forEachMixedCell(blocks, block, [&](int x, int y, int z, unsigned pattern) {
-            const auto vertexOn = [&](std::uint8_t e) {
-                const CellEdge& edge = table.edges[e];
-                const int ex = x + edge.x, ey = y + edge.y, ez = z + edge.z;
-                // A crossed edge has its low end in a listed block: an unlisted one's edges have no sign
-                // change.
-                const Block& owner = blocks[block.ahead[ex / kBlock * 4 + ey / kBlock * 2 + ez / kBlock]];
-                const int word = ex % kBlock, bit = ey % kBlock * kBlock + ez % kBlock;
-                const Word before = owner.crossed[edge.axis][word] & ((Word{1} << bit) - 1);
-                return static_cast<std::uint32_t>(owner.firstVertex + owner.firstOfWord[edge.axis][word] +
+            const bool plain = table.isPlain(pattern);
+            const DecidedCell decided = plain ? DecidedCell{} : block.decided[nextDecided++];
+            const CellCase& cell = plain ? table.plain(pattern) : table.at(pattern, decided.decision);
+            const auto vertex = [&](std::uint8_t v) {
+                if (v < kCellEdges) return vertexOnEdge(blocks, block, x, y, z, v);
+                const unsigned before = cell.rays & ((1u << (v - kCellEdges)) - 1);
+                return static_cast<std::uint32_t>(block.firstVertex + block.onEdges + decided.firstOnRay +
                                                   std::popcount(before));
             };
-            const CellCase& cell = table.cases[pattern];
-            for (int t = 0; t < cell.triangleCount; ++t) {
-                const auto& [a, b, c] = cell.triangles[t];
-                mesh.triangles[out++] = mirrored ? Triangle{vertexOn(a), vertexOn(c), vertexOn(b)}
-                                                 : Triangle{vertexOn(a), vertexOn(b), vertexOn(c)};
-            }
+            for (const auto& [a, b, c] : cell.triangles)
+                mesh.triangles[out++] = mirrored ? Triangle{vertex(a), vertex(c), vertex(b)}
+                                                 : Triangle{vertex(a), vertex(b), vertex(c)};
         });
     });
 }
@@ -434,7 +602,7 @@ TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& opti
     std::vector<Block> blocks = sample(shifted, progress);
     progress(kStage, 0.4);
     linkBlocks(blocks, shifted, progress);
-    cross(blocks, progress);
+    cross(blocks, shifted, progress);
     number(blocks, mesh);
     progress(kStage, 0.5);
     place(blocks, shifted, toWorld, options, progress, mesh);

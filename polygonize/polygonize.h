@@ -21,7 +21,9 @@ struct PolygonizeOptions {
 
 // The zero set of F - iso, F the spline itself (not a linear interpolation of samples): lattice values by
 // (1,4,1)/6 on each axis, one vertex on each lattice edge whose ends differ in sign, placed on a root of the
-// cubic along it. Value >= 0 counts as outside. The B-splines sum to 1, so F - iso is the spline with the
+// cubic along it. Where the signs of a cell's corners leave a choice, the sign of F in the middle of the face or the cell
+// decides (polygonize/cell_table.h), and a cell that is drawn as a tunnel has vertices inside, on roots along the rays from its
+// middle to corners. Value >= 0 counts as outside. The B-splines sum to 1, so F - iso is the spline with the
 // control points c - iso, and everything that is said of F below holds of it. Normals are the spline's
 // gradient in world coordinates; triangles are counter-clockwise seen from outside also when the transform
 // mirrors. Vertices and triangles come in an order that does not depend on the number of threads.

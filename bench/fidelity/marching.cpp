@@ -85,11 +85,14 @@ TriangleMesh marchingCubes(const DenseField& field) {
         }
     const CellTable& table = cellTable();
     for (auto cell = cells.begin(); cell; ++cell) {
-        const CellCase& found = table.cases[patternOf(field, *cell)];
-        for (int t = 0; t < found.triangleCount; ++t) {
+        // Ambiguous faces separate, and no loops are joined by tunnels, whose vertices lie inside the cell.
+        const unsigned pattern = patternOf(field, *cell);
+        const CellCase* found = &table.at(pattern, {0, false});
+        if (found->rays != 0) found = &table.at(pattern, {0, true});
+        for (const auto& corners : found->triangles) {
             Triangle triangle;
             for (int i = 0; i < 3; ++i) {
-                const CellEdge& edge = table.edges[found.triangles[t][i]];
+                const CellEdge& edge = table.edge(corners[i]);
                 triangle[i] = vertexOf[field.index((*cell).offsetBy(edge.x, edge.y, edge.z))][edge.axis];
             }
             mesh.triangles.push_back(triangle);
