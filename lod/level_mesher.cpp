@@ -1,4 +1,4 @@
-// make = choose the iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at the border -> count -> tell
+// make = hold what is thin -> choose the iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at the border -> count -> tell
 // sampling = polygonize the same field finer -> remove specks -> count
 #include "lod/level_mesher.h"
 
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hold/hold.h"
 #include "isowave/error.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
@@ -24,7 +25,7 @@ SolidCounts countsOf(const MeshTopology& topology) {
 }
 
 bool needsLevel0(const LevelOptions& options) {
-    return options.preserveVolume || options.protectThin || options.features || options.refit;
+    return options.preserveVolume || options.hold != Holding::none || options.features || options.refit;
 }
 
 namespace lod {
@@ -34,9 +35,9 @@ constexpr double kPreserved = 1e-4;  // of level 0's volume
 constexpr int kFinestRefine = 4;     // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
-    if (options.preserveVolume && options.protectThin)
+    if (options.preserveVolume && options.hold == Holding::shift)
         throw UsageError(
-            "--preserve-volume and --protect-thin exclude each other: each chooses the iso-value of a level");
+            "--preserve-volume and --hold shift exclude each other: each chooses the iso-value of a level");
     if (options.compact && options.refine == 1)
         throw UsageError("--compact collapses what --refine 2 or 4 adds; give one of them");
     if (options.compact && options.relax > 0)
@@ -65,13 +66,15 @@ struct LevelMesher::Level0 {
     std::optional<ThinParts> thin;
     std::optional<SolidFeatures> features;
     std::vector<SurfaceSample> surface;  // for refit
+    std::unique_ptr<LevelHold> hold;
 };
 
 LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
                          const Progress& progress, StageClock& clock)
     : options_(options),
       openBorder_(openBorder),
-      wantsThin_(options.protectThin || facts == Facts::thinToo),
+      wantsThin_(options.hold == Holding::shift ||
+                 (options.hold == Holding::none && facts == Facts::thinToo)),
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
@@ -94,16 +97,19 @@ void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& fi
 }
 
 // The volume without the specks that will be removed.
-double LevelMesher::isoPreservingVolume(int step, const BSplineField& field, double smallest) const {
+double LevelMesher::isoPreservingVolume(const LevelMesh& level, double smallest) const {
     const StageClock::Scope scope(clock_, "choose iso");
+    const BSplineField& field = level.field;
     const VolumeMatch match = isoOfVolume(
-        [&](double iso) { return volumeWithoutSpecks(polygonizeAt(field, iso, options_.refine), smallest); },
+        [&](double iso) {
+            return volumeWithoutSpecks(polygonizeAt(field, iso, level.report.refine), smallest);
+        },
         level0_->volume, kIsoLimit * field.K);
     const double error = match.volume / level0_->volume - 1;
     if (std::abs(error) > kPreserved)
         progress_.say(
-            fmt::format("step {}: the volume of level 0 is out of reach: {:+.3g} % at iso {:+.3g} K", step,
-                        100 * error, match.iso / field.K));
+            fmt::format("step {}: the volume of level 0 is out of reach: {:+.3g} % at iso {:+.3g} K",
+                        level.report.step, 100 * error, match.iso / field.K));
     return match.iso;
 }
 
@@ -116,11 +122,16 @@ std::vector<double> LevelMesher::thinValues(const BSplineField& field, int refin
     return level0_->thin->valuesOn(fine, spacing, progress_);
 }
 
-void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& mesh) {
+void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine) {
     level0_ = std::make_unique<Level0>();
     if (mesh.triangles.empty()) return;
     level0_->volume = volumeWithoutSpecks(mesh, 0);
     if (options_.refit) level0_->surface = surfaceSamples(mesh);
+    if (options_.hold == Holding::local) {
+        const StageClock::Scope scope(clock_, "hold");
+        level0_->hold =
+            std::make_unique<LevelHold>(surfaceOf(mesh, field.transform(), refine), field, progress_);
+    }
     if (wantsThin_) {
         const StageClock::Scope scope(clock_, "thin parts");
         level0_->thin.emplace(field, progress_);
@@ -175,9 +186,10 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
 
 LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     const BSplineField field = fieldToDraw(step, given);
-    LevelMesh level = madeAt(options_.refine, step, field);
-    if (step == 0 || !options_.protectThin || openBorder_ || options_.refine == kFinestRefine) return level;
-    LevelMesh finer = madeAt(2 * options_.refine, step, field);
+    const int refine = refineFor(step, field);
+    LevelMesh level = madeAt(refine, step, field);
+    if (step == 0 || options_.hold != Holding::shift || openBorder_ || refine == kFinestRefine) return level;
+    LevelMesh finer = madeAt(2 * refine, step, field);
     const auto pieces = [](const LevelMesh& l) {
         return l.report.topology.components + l.report.topology.genus;
     };
@@ -192,7 +204,8 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
     if (step == 0 || openBorder_ || refine == kFinestRefine || !isMore(finer, before)) return std::nullopt;
     const StageClock::Scope scope(clock_, "sampling");
     // A lattice point of level 0 and one of this level, refined so often, are equally dense.
-    const int finest = std::min(kFinestRefine, options_.refine << std::min(2, step / kStepsPerLevel));
+    const int finest =
+        std::min(kFinestRefine, options_.refine.value_or(1) << std::min(2, step / kStepsPerLevel));
     do {
         refine *= 2;
         TriangleMesh mesh = polygonizeAt(level.field, level.iso, refine);
@@ -204,12 +217,13 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
     return report;
 }
 
-double LevelMesher::isoFor(int step, const BSplineField& field,
-                           const std::optional<std::vector<double>>& thin) const {
+double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {
     double iso = 0;
+    const int step = level.report.step;
     if (step != 0 && level0_ && level0_->volume > 0 && options_.preserveVolume)
-        iso = isoPreservingVolume(step, field, smallestAt(step, field));
-    if (thin && options_.protectThin) iso = isoThatKeeps(*thin, ThinParts::kShare, kIsoLimit * field.K);
+        iso = isoPreservingVolume(level, smallestAt(step, level.field));
+    if (thin && options_.hold == Holding::shift)
+        iso = isoThatKeeps(*thin, ThinParts::kShare, kIsoLimit * level.field.K);
     return iso;
 }
 
@@ -217,14 +231,36 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest) {
     const StageClock::Scope scope(clock_, "polygonize");
     const int refine = level.report.refine;
     level.mesh = polygonizeAt(level.field, level.iso, refine);
-    if (level.report.step == 0) rememberLevel0(level.field, level.mesh);
+    if (level.report.step == 0) rememberLevel0(level.field, level.mesh, refine);
     SpeckRemoval removal = removeSpecks(level.mesh, smallest);
-    if (options_.compact) compact(level.mesh, refine, level.field, level.iso);
+    if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
     if (options_.relax > 0) relax(level.mesh, ZeroSet(level.field, level.iso), options_.relax, progress_);
     if (openBorder_)
         level.mesh = clipToBox(level.mesh, openBorder_->worldToIndex, openBorder_->low, openBorder_->high);
     level.report.topology = topologyOf(level.mesh);
     return removal;
+}
+
+int LevelMesher::refineFor(int step, const BSplineField& field) const {
+    if (options_.refine) return *options_.refine;
+    return holds(step) ? level0_->hold->refineFor(field) : 1;
+}
+
+bool LevelMesher::compacts(int refine) const { return options_.compact || (!options_.refine && refine > 1); }
+
+bool LevelMesher::holds(int step) const { return step != 0 && level0_ && level0_->hold; }
+
+void LevelMesher::hold(LevelMesh& level) const {
+    const StageClock::Scope scope(clock_, "hold");
+    LevelReport& report = level.report;
+    const HoldReport held = level0_->hold->apply(level.field, report.refine, {}, progress_);
+    const auto share = [&](std::int64_t inside) {
+        return held.samples > 0 ? static_cast<double>(inside) / static_cast<double>(held.samples) : 1.0;
+    };
+    report.thinKept = share(held.inside);
+    report.thinKeptAtIso0 = share(held.inside);
+    if (held.samples == 0) return;
+    report.hold = {held.samples, held.insideBefore, held.inside, held.thickened, held.changed, held.unmet};
 }
 
 LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
@@ -235,9 +271,10 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
     report.step = step;
     if (step % kStepsPerLevel == 0) report.level = step / kStepsPerLevel;
     report.refine = refine;
+    if (holds(step)) hold(level);
     std::optional<std::vector<double>> thin;
     if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, refine);
-    level.iso = isoFor(step, field, thin);
+    level.iso = isoFor(level, thin);
     const SpeckRemoval removal = draw(level, smallest);
     report.specksRemoved = removal.specks;
     report.speckVolume = removal.speckVolume;

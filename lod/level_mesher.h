@@ -31,7 +31,7 @@ class LevelMesher {
 
     // Whether make() must have seen step 0 before any other.
     bool needsLevel0() const { return isowave::needsLevel0(options_) || wantsThin_; }
-    // With protectThin at twice the refinement where that has fewer components and handles.
+    // With Holding::shift at twice the refinement where that has fewer components and handles.
     LevelMesh make(int step, const BSplineField& field);
 
     // Of which kind are the parts, handles and cavities that a level has beyond those of the level before? Those that
@@ -46,13 +46,17 @@ class LevelMesher {
 
     TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
     BSplineField fieldToDraw(int step, const BSplineField& field) const;
+    int refineFor(int step, const BSplineField& field) const;
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
+    bool holds(int step) const;
+    void hold(LevelMesh& level) const;
     double smallestAt(int step, const BSplineField& field) const;
-    double isoFor(int step, const BSplineField& field, const std::optional<std::vector<double>>& thin) const;
+    double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
     SpeckRemoval draw(LevelMesh& level, double smallest);
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
-    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh);
-    double isoPreservingVolume(int step, const BSplineField& field, double smallest) const;
+    bool compacts(int refine) const;
+    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine);
+    double isoPreservingVolume(const LevelMesh& level, double smallest) const;
     std::vector<double> thinValues(const BSplineField& field, int refine) const;
     void putIso(LevelMesh& level, double smallest) const;
     void putFeatures(LevelMesh& level, const SpeckRemoval& removal) const;

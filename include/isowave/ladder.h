@@ -11,7 +11,7 @@
 //
 // Step s is the solid after s directions have been halved (axes in turn x, y, z); level l is step 3 l.
 //
-//   each step:  field -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
+//   each step:  field -> hold what is thin -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
 //               -> count -> measure against level 0
 //
 // Distances to level 0, budgets and `compact` need the parts of isowave that CGAL's GPL packages are in (canMeasureDistances
@@ -42,14 +42,23 @@ struct StepRange {
     std::optional<int> last = {};
 };
 
+// How thin walls and rods, thinner than a level's voxel, are kept together.
+enum class Holding {
+    local,  // each level's control points are changed beside what is thin, and nowhere else
+    shift,  // each level at the least iso-value that keeps it
+    none    // not at all: the plain wavelet level
+};
+
 // Names in messages are those of the command's options.
 struct LevelOptions {
     std::optional<StepRange> levels = {}, steps = {};  // one of the two; neither: all levels
-    int refine = 1;                                    // samples of a node along each axis: 1, 2 or 4
+    // Samples of a node along each axis: 1, 2 or 4. Empty: chosen by each level, 2 where it holds what is thin, and the mesh is
+    // brought back to about the triangles of 1.
+    std::optional<int> refine = {};
+    Holding hold = Holding::local;
     bool compact = false;         // collapse what refine > 1 gives down to the triangles of refine = 1
     bool refit = false;           // fit the field of a level once more to level 0's surface
     bool preserveVolume = false;  // choose the iso-value at which a level has the volume of level 0
-    bool protectThin = false;     // choose the iso-value at which a level keeps what is thin; or refine more
     bool keepSpecks = false;      // components smaller than a node stay
     bool features = false;        // measure parts, holes and cavities of level 0 and tell what became of them
     int relax = 0;                // rounds of sliding vertices along the surface
@@ -102,6 +111,16 @@ struct SamplingReport {
     std::optional<double> thinKept;
 };
 
+// What a level did for what is thin.
+struct HoldSummary {
+    std::int64_t samples = 0;        // of level 0's thin places, one a cell of a quarter of the level's voxel
+    std::int64_t insidePlain = 0;    // how many of them the plain level has inside
+    std::int64_t inside = 0;         // and this one
+    std::int64_t thickened = 0;      // where the wall is thinner than the mesh's sampling can hold
+    std::int64_t controlPoints = 0;  // changed
+    std::int64_t unmet = 0;          // conditions that could not be met
+};
+
 struct LevelReport {
     int step = 0;
     std::optional<int> level;         // where step is 3 level
@@ -122,6 +141,7 @@ struct LevelReport {
     std::optional<double> volumeAtIso0;
     std::optional<double> volumeError;               // volume / level 0's - 1
     std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
+    std::optional<HoldSummary> hold;  // Holding::local: what it took; nothing where nothing is thin
     std::optional<FeatureReport> features;
 
     SolidCounts change;  // from the level before in the report, or from level 0

@@ -48,6 +48,12 @@ Json samplingJson(const std::optional<SamplingReport>& s) {
             {"thin_kept", orNull(s->thinKept)}};
 }
 
+Json holdJson(const std::optional<HoldSummary>& h) {
+    if (!h) return nullptr;
+    return {{"samples", h->samples},     {"inside_plain", h->insidePlain},     {"inside", h->inside},
+            {"thickened", h->thickened}, {"control_points", h->controlPoints}, {"unmet", h->unmet}};
+}
+
 // What is known of the mesh itself.
 void putMesh(Json& json, const LevelReport& level) {
     putTopology(json, level.topology);
@@ -64,6 +70,7 @@ void putMesh(Json& json, const LevelReport& level) {
     json["volume_error"] = orNull(level.volumeError);
     json["thin_kept"] = orNull(level.thinKept);
     json["thin_kept_at_iso_0"] = orNull(level.thinKeptAtIso0);
+    json["hold"] = holdJson(level.hold);
     json["features"] = featuresJson(level.features);
     json["change"] = changeJson(level.change);
     json["sampling"] = samplingJson(level.sampling);

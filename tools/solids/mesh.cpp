@@ -55,13 +55,13 @@ class MeshCommand : public Command {
 
     std::string textOf(const LevelReport& level) const {
         const MeshTopology& topology = level.topology;
-        std::string text =
-            fmt::format("{}: step {}, {}, {}, genus {}, volume {}, {}{}{}\n", output_->string(), level.step,
-                        counted(topology.triangles, "triangle"), counted(topology.components, "component"),
-                        grouped(topology.genus), shortNumber(topology.volume),
-                        topology.closed() && topology.manifold() ? "closed" : "NOT closed",
-                        level.isoShift == 0 ? "" : fmt::format(", iso {:+.3f} K", level.isoShift),
-                        level.refine == level_.refine ? "" : fmt::format(", refine {}", level.refine));
+        std::string text = fmt::format(
+            "{}: step {}, {}, {}, genus {}, volume {}, {}{}{}\n", output_->string(), level.step,
+            counted(topology.triangles, "triangle"), counted(topology.components, "component"),
+            grouped(topology.genus), shortNumber(topology.volume),
+            topology.closed() && topology.manifold() ? "closed" : "NOT closed",
+            level.isoShift == 0 ? "" : fmt::format(", iso {:+.3f} K", level.isoShift),
+            level.refine == level_.refine.value_or(1) ? "" : fmt::format(", refine {}", level.refine));
         if (level_.deviation)
             text += fmt::format("triangles are at most {} from the zero set, rms {}\n",
                                 shortNumber(*level.maxDeviation), shortNumber(*level.rmsDeviation));

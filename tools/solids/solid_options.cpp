@@ -44,11 +44,14 @@ void declareLevelIso(OptionList& options, LevelOptions& level) {
     options.flag("--preserve-volume",
                  "each level at the iso-value that gives it the volume of level 0, to 0.01 %",
                  level.preserveVolume);
-    options.flag(
-        "--protect-thin",
-        "each level at the least iso-value that keeps thin walls and rods together; sampled twice as "
-        "fine where that leaves fewer holes in them",
-        level.protectThin);
+    options.value("--hold", "local|shift|none", "local",
+                  "walls and rods thinner than a level's voxel stay whole: by a change beside them alone; by "
+                  "moving the whole "
+                  "surface outwards; not at all, the plain wavelet level",
+                  [&](const std::string& v) {
+                      level.hold = choice<Holding>(
+                          v, {{"local", Holding::local}, {"shift", Holding::shift}, {"none", Holding::none}});
+                  });
     options.flag("--keep-specks",
                  "coarser levels keep components and cavities that are smaller than one of their nodes",
                  level.keepSpecks);
@@ -99,8 +102,10 @@ void declareMaxMemory(OptionList& options, SolidOptions& solid) {
 }
 
 void declareMesh(OptionList& options, LevelOptions& level, bool features) {
-    options.value("--refine", "1|2|4", "1",
-                  "samples of a node along each axis: more triangles, closer to the spline",
+    options.value("--refine", "1|2|4", "chosen by each level",
+                  "samples of a node along each axis: more triangles, closer to the spline. Without it a "
+                  "level that holds what "
+                  "is thin takes 2 and brings the triangles back to about the number of 1",
                   [&](const std::string& v) {
                       level.refine = choice<int>(v, {{"1", 1}, {"2", 2}, {"4", 4}});
                   });

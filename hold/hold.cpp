@@ -1,0 +1,289 @@
+// apply = samples that are thin here -> rows (hard, beside the surface, farther out) -> ascent -> hard rows alone
+#include "hold/hold.h"
+
+#include <openvdb/tools/Morphology.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hold/point_grid.h"
+#include "volume/mesh_nearest.h"
+#include "volume/row_ascent.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Coord;
+using openvdb::Vec3d;
+using openvdb::Vec3f;
+
+constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
+constexpr double kFewThin = 0.01;       // of the surface: so little asks for no finer sampling of all of it
+constexpr double kFewThickened = 0.004; // of what is thin
+constexpr double kLongestRun = 2;      // of H: a longer one runs along a wall rather than across it
+constexpr double kKnownDistance = 3;  // voxels: level 0's field is a distance up to there
+
+// n things in parallel, in pieces that cancel.
+template <class Body>
+void forEach(std::size_t n, const Progress& progress, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 256), [&](const auto& range) {
+        progress.check();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+    });
+}
+
+// Index space of level 0 -> that of a level.
+struct LevelScale {
+    Vec3d h;   // the level's voxel on each axis, in voxels of level 0
+    double H;  // its mean
+
+    LevelScale(const BSplineField& finest, const BSplineField& level)
+        : h(level.transform().voxelSize() / finest.transform().voxelSize()), H(std::cbrt(h[0] * h[1] * h[2])) {}
+    Vec3d toLevel(const Vec3d& at, const Vec3d& origin) const { return (at - origin) / h; }
+    // The level's voxel along a direction.
+    double along(const Vec3f& n) const { return (Vec3d(n) * h).length(); }
+};
+
+// The mean length of the gradient of F at the surface.
+double slopeOf(const BSplineField& field, const FinestSurface& surface) {
+    constexpr std::size_t kAsked = 2000;
+    const std::size_t stride = surface.points.size() / kAsked + 1;
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < surface.points.size(); i += stride, ++count)
+        sum += evaluateGradient(field, surface.points[i]).length();
+    return count > 0 ? sum / count : 1;
+}
+
+// How far a place is from level 0's solid; 0 inside.
+class Away {
+  public:
+    Away(const BSplineField& finest, double slope, const std::vector<Vec3d>& surface)
+        : finest_(finest), slope_(slope) {
+        std::vector<Triangle> each(surface.size());
+        for (std::uint32_t i = 0; i < each.size(); ++i) each[i] = {i, i, i};
+        points_.emplace(surface, each);
+    }
+    // `reach` where it is at least that.
+    double at(const Vec3d& place, double reach) const {
+        const double near = evaluate(finest_, place) / slope_;
+        if (near < kKnownDistance) return std::clamp(near, 0.0, reach);
+        return std::max(kKnownDistance, std::sqrt(points_->nearest(place, {reach * reach, -1}).squared));
+    }
+
+  private:
+    const BSplineField& finest_;
+    double slope_;
+    std::optional<TriangleHierarchy> points_;
+};
+
+// The rows of one level.
+class Rows {
+  public:
+    Rows(const FinestSurface& surface, const BSplineField& finest, double slope, const BSplineField& level, int refine,
+         const HoldOptions& options, const Progress& progress)
+        : surface_(surface),
+          finest_(finest),
+          slope_(slope),
+          scale_(finest, level),
+          origin_(finest.transform().worldToIndex(level.transform().indexToWorld(Vec3d(0)))),
+          refine_(refine),
+          options_(options),
+          progress_(progress) {}
+
+    bool isThin(const ThinSample& s) const {
+        const double H = scale_.along(s.normal);
+        return s.thickness <= options_.longest * H && s.length <= kLongestRun * H && s.partVolume >= scale_.h[0] * scale_.h[1] * scale_.h[2];
+    }
+
+    void choose(const std::vector<ThinSample>& samples) {
+        std::vector<Vec3f> at;
+        for (const ThinSample& s : samples)
+            if (isThin(s)) {
+                samples_.push_back(s);
+                at.push_back(s.at);
+            }
+        const auto kept = oneOfEachCell(at, cell(), [&](std::uint32_t a, std::uint32_t b) {
+            return samples_[a].thickness < samples_[b].thickness;
+        });
+        std::vector<ThinSample> chosen;
+        for (const std::uint32_t i : kept) chosen.push_back(samples_[i]);
+        samples_ = std::move(chosen);
+    }
+
+    void add() {
+        std::vector<Vec3f> at;
+        for (const ThinSample& s : samples_) at.push_back(s.at);
+        grid_.emplace(at, scale_.H);
+        chooseSurface();
+        std::vector<Vec3d> points;
+        for (const std::uint32_t i : near_) points.push_back(surface_.points[i]);
+        if (points.empty()) points.push_back(Vec3d(samples_.front().at));
+        away_.emplace(finest_, slope_, points);
+        addHard();
+        addBesideSurface();
+        addFartherOut();
+    }
+
+    const std::vector<ThinSample>& samples() const { return samples_; }
+    const std::vector<FieldRow>& hard() const { return hard_; }
+    const std::vector<FieldRow>& soft() const { return soft_; }
+    double tolerance() const { return 0.005 * scale_.H * slope_; }
+    Vec3d toLevel(const Vec3d& at) const { return scale_.toLevel(at, origin_); }
+    // By how much the wall is thickened on either side.
+    double grown(const ThinSample& s) const { return std::max(0.0, half(s) - s.thickness / 2); }
+
+  private:
+    Vec3d cell() const { return scale_.h / options_.density; }
+    double half(const ThinSample& s) const {
+        return options_.leastThickness * scale_.along(s.normal) / (2 * refine_);
+    }
+    FieldRow row(const Vec3d& at, float sign, double bound, double rho) const {
+        return {toLevel(at), sign, static_cast<float>(bound * slope_), static_cast<float>(rho), false};
+    }
+
+    void chooseSurface() {
+        const Vec3d size = openvdb::math::maxComponent(cell(), Vec3d(0.5));
+        near_ = oneOfEachCell(surface_.points, size, [](std::uint32_t a, std::uint32_t b) { return a < b; });
+        sampleOf_.assign(near_.size(), PointGrid::kNone);
+        forEach(near_.size(), progress_, [&](std::size_t i) {
+            sampleOf_[i] = grid_->nearest(surface_.points[near_[i]], kSamplesReachSurface * scale_.H).index;
+        });
+    }
+
+    void addHard() {
+        for (const ThinSample& s : samples_) {
+            const Vec3d x(s.at), step = half(s) * Vec3d(s.normal);
+            hard_.push_back(row(x, 1, options_.depth * scale_.H, options_.rhoHard));
+            hard_.push_back(row(x + step, 1, 0, options_.rhoHard));
+            hard_.push_back(row(x - step, 1, 0, options_.rhoHard));
+        }
+    }
+
+    void addBesideSurface() {
+        const double margin = options_.margin * scale_.H;
+        std::vector<std::array<FieldRow, 2>> rows(near_.size());
+        std::vector<std::array<bool, 2>> wanted(near_.size());
+        forEach(near_.size(), progress_, [&](std::size_t i) {
+            if (sampleOf_[i] == PointGrid::kNone) return;
+            const ThinSample& s = samples_[sampleOf_[i]];
+            const Vec3d p = surface_.points[near_[i]], N(surface_.normals[near_[i]]);
+            const double out = grown(s) + margin;
+            const Vec3d outer = p + out * N, inner = p - margin * N;
+            rows[i][0] = row(outer, -1, 0, options_.rho);
+            wanted[i][0] = away_->at(outer, 2 * out) >= 0.8 * out;  // not in another wall
+            rows[i][1] = row(inner, 1, 0, options_.rho);
+            wanted[i][1] = s.thickness / 2 - margin > half(s) && evaluate(finest_, inner) < 0;
+        });
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (int k = 0; k < 2; ++k)
+                if (wanted[i][k]) soft_.push_back(rows[i][k]);
+    }
+
+    // Places of a lattice of H/2 within reach of a sample, in the order of its leaves.
+    std::vector<Vec3d> placesAround(const Vec3d& step) const {
+        openvdb::MaskTree mask;
+        openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(mask);
+        for (const ThinSample& s : samples_) accessor.setValueOn(Coord::round(Vec3d(s.at) / step));
+        const int reach = static_cast<int>(std::ceil(kSamplesReachOut * scale_.H / std::min({step[0], step[1], step[2]})));
+        openvdb::tools::dilateActiveValues(mask, std::min(reach, 4), openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                           openvdb::tools::EXPAND_TILES);
+        std::vector<Vec3d> places;
+        mask.voxelizeActiveTiles();
+        for (auto voxel = mask.cbeginValueOn(); voxel; ++voxel) places.push_back(voxel.getCoord().asVec3d() * step);
+        return places;
+    }
+
+    void addFartherOut() {
+        const Vec3d step = openvdb::math::maxComponent(scale_.h / 2, Vec3d(1));
+        const std::vector<Vec3d> places = placesAround(step);
+        std::vector<char> wanted(places.size());
+        const double H = scale_.H, first = options_.margin + 0.15;
+        forEach(places.size(), progress_, [&](std::size_t i) {
+            const PointGrid::Nearest near = grid_->nearest(places[i], kSamplesReachOut * H);
+            if (near.index == PointGrid::kNone) return;
+            const double e = grown(samples_[near.index]), g = away_->at(places[i], 1.6 * H);
+            wanted[i] = g > 0 && g < 1.6 * H && g > e + first * H && g < e + 0.9 * H;
+        });
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (wanted[i]) soft_.push_back(row(places[i], -1, 0, options_.rho));
+    }
+
+    const FinestSurface& surface_;
+    const BSplineField& finest_;
+    double slope_;
+    LevelScale scale_;
+    Vec3d origin_;  // of the level's index space, in that of level 0
+    int refine_;
+    HoldOptions options_;
+    const Progress& progress_;
+    std::vector<ThinSample> samples_;
+    std::optional<PointGrid> grid_;        // of the samples
+    std::vector<std::uint32_t> near_;      // points of the surface, one a cell
+    std::vector<std::uint32_t> sampleOf_;  // of each the nearest sample
+    std::optional<Away> away_;
+    std::vector<FieldRow> hard_, soft_;
+};
+
+std::int64_t countInside(const BSplineField& level, const Rows& rows) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, rows.samples().size(), 1024), std::int64_t{0},
+        [&](const auto& range, std::int64_t count) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                count += evaluate(level, rows.toLevel(Vec3d(rows.samples()[i].at))) < 0;
+            return count;
+        },
+        std::plus<>());
+}
+
+}  // namespace
+
+LevelHold::LevelHold(FinestSurface surface, BSplineField finest, const Progress& progress)
+    : surface_(std::move(surface)),
+      finest_(std::move(finest)),
+      slope_(slopeOf(finest_, surface_)),
+      area_(areaOf(surface_)),
+      samples_(thinSamplesOf(surface_, std::numeric_limits<double>::infinity(), progress)) {}
+
+int LevelHold::refineFor(const BSplineField& level, const HoldOptions& options) const {
+    const Rows rows(surface_, finest_, slope_, level, 2, options, {});
+    double thin = 0, thickened = 0;
+    for (const ThinSample& s : samples_) {
+        if (!rows.isThin(s)) continue;
+        thin += s.area;
+        if (rows.grown(s) > 0) thickened += s.area;
+    }
+    if (2 * thin <= kFewThin * area_) return 1;
+    return thickened > kFewThickened * thin ? 4 : 2;
+}
+
+HoldReport LevelHold::apply(BSplineField& level, int refine, const HoldOptions& options, const Progress& progress) const {
+    constexpr int kRounds = 40, kInner = 12;
+    HoldReport report;
+    Rows rows(surface_, finest_, slope_, level, refine, options, progress);
+    rows.choose(samples_);
+    report.samples = static_cast<std::int64_t>(rows.samples().size());
+    if (report.samples == 0) return report;
+    rows.add();
+    for (const ThinSample& s : rows.samples()) report.thickened += rows.grown(s) > 0;
+    report.insideBefore = countInside(level, rows);
+    const AscentOptions ascent{rows.tolerance(), kRounds, kInner};
+    std::vector<FieldRow> all = rows.hard();
+    all.insert(all.end(), rows.soft().begin(), rows.soft().end());
+    report.rows = static_cast<std::int64_t>(all.size());
+    level.controlPoints = level.controlPoints->deepCopy();
+    const AscentReport first = ascend(level, all, ascent, progress);
+    std::vector<FieldRow> hard = rows.hard();
+    for (FieldRow& row : hard) row.rho = 0;
+    const AscentReport last = ascend(level, hard, ascent, progress);
+    report.rounds = first.rounds + last.rounds;
+    report.unmet = last.unmet;
+    report.settled = first.settled && last.settled;
+    report.changed = std::max(first.changed, last.changed);
+    report.inside = countInside(level, rows);
+    return report;
+}
+
+}  // namespace isowave

@@ -1,0 +1,143 @@
+#include "hold/thin_samples.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "polygonize/topology.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Vec3d;
+using openvdb::Vec3f;
+
+// A vertex on a lattice line along an axis: where on the line, and which of the lines.
+struct OnLine {
+    std::uint64_t line;  // axis, then the two other lattice coordinates
+    double along;
+    std::uint32_t vertex;
+};
+
+constexpr double kWhole = 1e-5;  // of a sample edge: polygonize() keeps vertices 1e-3 away from lattice points
+
+// The axis of the lattice edge that a point lies on; -1 for one inside a cell.
+int axisOf(const Vec3d& at) {
+    int axis = -1, whole = 0;
+    for (int a = 0; a < 3; ++a)
+        if (std::abs(at[a] - std::round(at[a])) < kWhole)
+            ++whole;
+        else
+            axis = a;
+    return whole == 2 ? axis : -1;
+}
+
+std::uint64_t lineOf(const Vec3d& at, int axis) {
+    constexpr std::int64_t kMiddle = std::int64_t{1} << 30;
+    const auto whole = [&](int a) {
+        return static_cast<std::uint64_t>(std::llround(at[a]) + kMiddle) & ((std::uint64_t{1} << 31) - 1);
+    };
+    return static_cast<std::uint64_t>(axis) << 62 | whole((axis + 1) % 3) << 31 | whole((axis + 2) % 3);
+}
+
+std::vector<OnLine> verticesOnLines(const FinestSurface& surface) {
+    std::vector<OnLine> found;
+    found.reserve(surface.points.size());
+    for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
+        const Vec3d at = surface.points[v] * surface.refine;
+        if (const int axis = axisOf(at); axis >= 0) found.push_back({lineOf(at, axis), at[axis], v});
+    }
+    tbb::parallel_sort(found.begin(), found.end(), [](const OnLine& a, const OnLine& b) {
+        return a.line != b.line ? a.line < b.line : a.along < b.along;
+    });
+    return found;
+}
+
+// thickness 0: not thin.
+ThinSample sampleBetween(const FinestSurface& surface, const OnLine& in, const OnLine& out, double longest) {
+    ThinSample sample;
+    const int axis = static_cast<int>(in.line >> 62);
+    const double length = (out.along - in.along) / surface.refine;
+    const Vec3f nIn = surface.normals[in.vertex], nOut = surface.normals[out.vertex];
+    if (!(length <= longest) || nIn[axis] >= 0 || nOut[axis] <= 0 || nIn.dot(nOut) > kOppositeNormals) return sample;
+    sample.normal = (nOut - nIn).unit();
+    sample.at = Vec3f((surface.points[in.vertex] + surface.points[out.vertex]) / 2);
+    const float share = std::abs(sample.normal[axis]);
+    sample.thickness = static_cast<float>(length) * share;
+    sample.length = static_cast<float>(length);
+    sample.area = share / static_cast<float>(surface.refine * surface.refine);
+    sample.partVolume = std::min(surface.partVolume[in.vertex], surface.partVolume[out.vertex]);
+    // The wall's normal in the world goes with the inverse of the spacing.
+    Vec3d world = Vec3d(sample.normal) / surface.spacing;
+    world.normalize();
+    sample.thicknessInWorld = static_cast<float>(length * surface.spacing[axis] * std::abs(world[axis]));
+    return sample;
+}
+
+}  // namespace
+
+FinestSurface surfaceOf(const TriangleMesh& mesh, const openvdb::math::Transform& transform, int refine) {
+    FinestSurface surface;
+    surface.refine = refine;
+    surface.spacing = transform.voxelSize();
+    const std::size_t count = mesh.points.size();
+    surface.points.resize(count);
+    surface.normals.resize(count);
+    surface.partVolume.resize(count);
+    const double voxel = transform.baseMap()->determinant();
+    const openvdb::Mat3d linear = transform.baseMap()->getAffineMap()->getMat4().getMat3();
+    const MeshComponents components = componentsOf(mesh);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) {
+        surface.points[v] = transform.worldToIndex(Vec3d(mesh.points[v].data()));
+        // index -> world is x M: the gradient in index space is M times that of the world.
+        const auto& n = mesh.normals[v];
+        surface.normals[v] = Vec3f((linear * Vec3d(n[0], n[1], n[2])).unit());
+        const std::uint32_t part = components.of[v];
+        if (part != MeshComponents::kNone)
+            surface.partVolume[v] = static_cast<float>(std::abs(components.volume[part] / voxel));
+    });
+    return surface;
+}
+
+double areaOf(const FinestSurface& surface) {
+    double area = 0;
+    for (std::size_t v = 0; v < surface.points.size(); ++v)
+        if (const int axis = axisOf(surface.points[v] * surface.refine); axis >= 0)
+            area += std::abs(surface.normals[v][axis]);
+    return area / (surface.refine * surface.refine);
+}
+
+std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, const Progress& progress) {
+    const std::vector<OnLine> vertices = verticesOnLines(surface);
+    std::vector<ThinSample> samples(vertices.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(1, std::max<std::size_t>(1, vertices.size()), 4096),
+                      [&](const auto& range) {
+                          progress.check();
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              if (vertices[i - 1].line == vertices[i].line)
+                                  samples[i] = sampleBetween(surface, vertices[i - 1], vertices[i], longest);
+                      });
+    std::erase_if(samples, [](const ThinSample& s) { return !(s.thickness > 0); });
+    return samples;
+}
+
+Thickness thinnest(const std::vector<ThinSample>& samples, double share) {
+    if (samples.empty()) return {};
+    std::vector<std::uint32_t> order(samples.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return samples[a].thickness != samples[b].thickness ? samples[a].thickness < samples[b].thickness : a < b;
+    });
+    double total = 0, sum = 0;
+    for (const ThinSample& s : samples) total += s.area;
+    for (const std::uint32_t i : order) {
+        sum += samples[i].area;
+        if (sum >= share * total) return {samples[i].thickness, samples[i].thicknessInWorld};
+    }
+    return {samples[order.back()].thickness, samples[order.back()].thicknessInWorld};
+}
+
+}  // namespace isowave
