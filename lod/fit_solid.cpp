@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+#include <cmath>
+
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "lod/memory.h"
 #include "volume/distance.h"
+#include "volume/leaf_words.h"
 
 namespace isowave::lod {
 namespace {
@@ -91,6 +95,18 @@ NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance) {
             tree.addTile(value.getLevel(), value.getCoord(), true, false);
     }
     return nodesFromSigns(*inside);
+}
+
+double volumeInside(const Shape& shape) {
+    std::int64_t count = 0;
+    for (auto leaf = shape.constTree().cbeginLeaf(); leaf; ++leaf)
+        for (const std::uint64_t word : insideWordsOf(*leaf)) count += std::popcount(word);
+    auto tile = shape.cbeginValueAll();
+    tile.setMaxDepth(openvdb::BoolTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile) count += static_cast<std::int64_t>(tile.getVoxelCount());
+    const openvdb::Mat4d indexToWorld = shape.transform().baseMap()->getAffineMap()->getMat4();
+    return static_cast<double>(count) * std::abs(indexToWorld.getMat3().det());
 }
 
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {

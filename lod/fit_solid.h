@@ -39,6 +39,9 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
 // The signs of a grid of distances, for fitBinary.
 NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance);
 
+// Of the lattice points inside, each as large as a voxel of the transform; world units^3.
+double volumeInside(const Shape& shape);
+
 // Throws InputError where the field has only one side. remedy: "the image holds nothing but inside".
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy);
 

@@ -176,6 +176,8 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     };
     fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
         clock);
+    if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
+        solid.input.volume = volumeInside(*solid.field->shape);
     requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
     return solid;
 }

@@ -59,7 +59,7 @@ Fields fieldsOfPyramid(const InputReport& input) {
     const Fields source = under("input.", input.source);
     if (source.empty()) return std::move(list).fields();
     const Json object = objectOf(source);
-    for (const char* key : {"dimensions", "spacing", "iso", "space"})
+    for (const char* key : {"dimensions", "spacing", "iso", "volume", "space"})
         if (object.contains(key)) list.put(key, object[key]);
     list.put("source", object);
     return std::move(list).fields();
@@ -73,6 +73,7 @@ Fields fieldsOfMesh(const InputReport& input) {
     list.putIf("dimensions", input.dimensions);
     list.putIf("spacing", input.spacing);
     list.putIf("triangles", input.triangles);
+    list.putIf("volume", input.volume);
     list.put("repair", input.repairNotes);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
     return std::move(list).fields();
@@ -92,6 +93,7 @@ Fields fieldsOfLattice(const InputReport& input) {
     list.putIf("iso", input.iso);
     list.putIf("inverted", input.inverted);
     list.putIf("open_border", input.openBorder);
+    list.putIf("volume", input.volume);
     list.putIf("origin", input.origin);
     list.putIf("direction", input.direction);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
@@ -181,6 +183,7 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
     input->origin = valueOf<std::array<double, 3>>(json, "origin");
     input->direction = valueOf<std::array<std::array<double, 3>, 3>>(json, "direction");
     input->triangles = valueOf<std::int64_t>(json, "triangles");
+    input->volume = valueOf<double>(json, "volume");
     input->repairNotes =
         valueOf<std::vector<std::string>>(json, "repair").value_or(std::vector<std::string>());
     input->space = choiceOf<Space>(json, "space", kSpaces);

@@ -78,7 +78,10 @@ struct InputReport {
         direction;                          // unit vectors along the lattice's axes, LPS
     std::optional<std::int64_t> triangles;  // of a mesh, as read
     std::vector<std::string> repairNotes;   // what was mended in it, a line each
-    std::optional<Space> space;             // axes that meshes of the solid have
+    // World units^3. Masks and labels: voxels inside times the volume of one, unless the border is open. Meshes: their
+    // own, unless parts of them overlap or the orientation cannot be trusted. Others do not say.
+    std::optional<double> volume;
+    std::optional<Space> space;  // axes that meshes of the solid have
 
     // Of a pyramid: what its file says about the solid that it was made of, "input.path" -> "\"part.stl\"", values as
     // JSON; and the same with types, as far as it is understood.
