@@ -30,7 +30,7 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;  // of level 0's volume
+constexpr double kPreserved = 1e-4;  // of the volume to keep
 constexpr int kFinestRefine = 4;     // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
@@ -68,10 +68,11 @@ struct LevelMesher::Level0 {
 };
 
 LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                         const Progress& progress, StageClock& clock)
+                         std::optional<double> inputVolume, const Progress& progress, StageClock& clock)
     : options_(options),
       openBorder_(openBorder),
       wantsThin_(options.protectThin || facts == Facts::thinToo),
+      inputVolume_(inputVolume),
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
@@ -93,17 +94,20 @@ void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& fi
     if (normals) mesh.normals = ZeroSet(field, iso).normalsOf(mesh, progress_);
 }
 
+// 0: neither is known.
+double LevelMesher::volumeToKeep() const { return inputVolume_.value_or(level0_ ? level0_->volume : 0); }
+
 // The volume without the specks that will be removed.
 double LevelMesher::isoPreservingVolume(int step, const BSplineField& field, double smallest) const {
     const StageClock::Scope scope(clock_, "choose iso");
     const VolumeMatch match = isoOfVolume(
         [&](double iso) { return volumeWithoutSpecks(polygonizeAt(field, iso, options_.refine), smallest); },
-        level0_->volume, kIsoLimit * field.K);
-    const double error = match.volume / level0_->volume - 1;
+        volumeToKeep(), kIsoLimit * field.K);
+    const double error = match.volume / volumeToKeep() - 1;
     if (std::abs(error) > kPreserved)
-        progress_.say(
-            fmt::format("step {}: the volume of level 0 is out of reach: {:+.3g} % at iso {:+.3g} K", step,
-                        100 * error, match.iso / field.K));
+        progress_.say(fmt::format("step {}: the volume of {} is out of reach: {:+.3g} % at iso {:+.3g} K",
+                                  step, inputVolume_ ? "the input" : "level 0", 100 * error,
+                                  match.iso / field.K));
     return match.iso;
 }
 
@@ -150,7 +154,7 @@ void LevelMesher::putIso(LevelMesh& level, double smallest) const {
         const double area = (before.area + topology.area) / 2;
         report.isoDistance = area > 0 ? (topology.volume - before.volume) / area : 0;
     }
-    if (level0_ && level0_->volume > 0) report.volumeError = topology.volume / level0_->volume - 1;
+    if (volumeToKeep() > 0) report.volumeError = topology.volume / volumeToKeep() - 1;
 }
 
 void LevelMesher::putFeatures(LevelMesh& level, const SpeckRemoval& removal) const {
@@ -207,7 +211,7 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
 double LevelMesher::isoFor(int step, const BSplineField& field,
                            const std::optional<std::vector<double>>& thin) const {
     double iso = 0;
-    if (step != 0 && level0_ && level0_->volume > 0 && options_.preserveVolume)
+    if (options_.preserveVolume && volumeToKeep() > 0)
         iso = isoPreservingVolume(step, field, smallestAt(step, field));
     if (thin && options_.protectThin) iso = isoThatKeeps(*thin, ThinParts::kShare, kIsoLimit * field.K);
     return iso;

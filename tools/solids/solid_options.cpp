@@ -42,7 +42,8 @@ void declareFit(OptionList& options, SolidOptions& solid) {
 
 void declareLevelIso(OptionList& options, LevelOptions& level) {
     options.flag("--preserve-volume",
-                 "each level at the iso-value that gives it the volume of level 0, to 0.01 %",
+                 "each level at the iso-value that gives it the input's volume (level 0's where it is not "
+                 "known), to 0.01 %",
                  level.preserveVolume);
     options.flag(
         "--protect-thin",
