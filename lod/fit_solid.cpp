@@ -8,6 +8,7 @@
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "lod/memory.h"
+#include "lod/source.h"
 #include "volume/distance.h"
 #include "volume/leaf_words.h"
 
@@ -22,6 +23,7 @@ FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
         summary.band = fitting.distance.band;
     }
     summary.filterPasses = report.filterPasses;
+    summary.gradientPasses = report.gradientPasses;
     summary.latticePoints = report.latticePoints;
     summary.disagreeing = report.disagreeing;
     summary.repairPasses = report.repairPasses;
@@ -33,7 +35,7 @@ FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
 
 }  // namespace
 
-const char* nameOf(FitMethod method) { return method == FitMethod::binary ? "binary" : "distance"; }
+const char* nameOf(FitMethod method) { return kFitMethods[static_cast<std::size_t>(method)]; }
 
 Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
     Fitting fitting;
@@ -60,14 +62,16 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
     const auto allow = [&](double bytesEach, auto count) {
         refuseTooLarge(solid.name(), bytesEach * static_cast<double>(count), memoryLimit, remedy);
     };
-    if (fitting.method == FitMethod::binary) {
+    if (fitting.method != FitMethod::distance) {
         const NodeCollection nodes = [&] {
             const StageClock::Scope scope(clock, "nodes");
             return samples.nodes();
         }();
         allow(kBytesPerNode, nodes.nodeCount());
         const StageClock::Scope scope(clock, "fit");
-        solid.field = fitBinary(nodes, fitting.binary, &report, progress);
+        solid.field = fitting.method == FitMethod::binary
+                          ? fitBinary(nodes, fitting.binary, &report, progress)
+                          : fitMask(nodes, fitting.mask, &report, progress);
     } else {
         const openvdb::FloatGrid::Ptr grid = [&] {
             const StageClock::Scope scope(clock, "distance");

@@ -140,11 +140,10 @@ Fields fieldsOf(const std::optional<FitSummary>& fit, const InputReport& input) 
     if (input.kind == InputReport::Kind::pyramid) return under("fit.", input.source);
     FieldList list;
     if (!fit) return {};
-    const bool binary = fit->method == FitMethod::binary;
-    list.put("method", binary ? "binary" : "distance");
-    if (binary) {
-        list.put("filter_passes", fit->filterPasses);
-    } else {
+    list.put("method", kFitMethods[static_cast<std::size_t>(fit->method)]);
+    if (fit->method == FitMethod::binary) list.put("filter_passes", fit->filterPasses);
+    if (fit->method == FitMethod::mask) list.put("gradient_passes", fit->gradientPasses);
+    if (fit->method == FitMethod::distance) {
         list.put("half_width", fit->halfWidth);
         list.put("band", fit->band);
     }
@@ -192,13 +191,14 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
 
 std::optional<FitSummary> fitOfSource(const Source& source) {
     const Json json = objectOf(under("fit.", source));
-    const auto method = choiceOf<FitMethod>(json, "method", std::array{"binary", "distance"});
+    const auto method = choiceOf<FitMethod>(json, "method", kFitMethods);
     if (!method) return std::nullopt;
     FitSummary fit;
     fit.method = *method;
     fit.halfWidth = valueOf<double>(json, "half_width").value_or(0);
     fit.band = valueOf<double>(json, "band").value_or(0);
     fit.filterPasses = valueOf<int>(json, "filter_passes").value_or(0);
+    fit.gradientPasses = valueOf<int>(json, "gradient_passes").value_or(0);
     fit.latticePoints = valueOf<std::int64_t>(json, "lattice_points").value_or(0);
     fit.disagreeing = valueOf<std::int64_t>(json, "disagreeing").value_or(0);
     fit.repairPasses = valueOf<int>(json, "repair_passes").value_or(0);

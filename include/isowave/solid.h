@@ -27,9 +27,10 @@
 
 namespace isowave {
 
-// From samples to a field. binary: from inside and outside alone, for masks and labels. distance: from signed distances,
-// for everything else.
-enum class FitMethod { binary, distance };
+// From samples to a field. mask: from inside and outside alone, smooth and with the volume of the voxels, for masks and
+// labels. distance: from signed distances, for everything else. binary: from inside and outside alone, by filtered weights,
+// as Esteve, Brunet and Vinacua have it.
+enum class FitMethod { binary, distance, mask };
 
 // Names in messages are those of the command's options.
 struct SolidOptions {
@@ -50,7 +51,7 @@ struct SolidOptions {
     int finestStep = 0;  // of a pyramid's file only what this step and coarser ones need is read
 
     // ---- the fit
-    std::optional<FitMethod> fit = {};     // default: binary for masks and labels, distance else
+    std::optional<FitMethod> fit = {};     // default: mask for masks and labels, distance else
     std::optional<double> halfWidth = {};  // voxels each side in which distances are known; default 4
     // Voxels each side that the field is kept for, at most halfWidth; default 2.
     std::optional<double> band = {};
@@ -94,6 +95,7 @@ struct FitSummary {
     FitMethod method = FitMethod::distance;
     double halfWidth = 0, band = 0;  // voxels each side; distance fit
     int filterPasses = 0;            // of the Laplacian; binary fit
+    int gradientPasses = 0;          // mask fit
     std::int64_t latticePoints = 0;  // whose sign was compared with the input's
     std::int64_t disagreeing = 0;    // of these, in the end
     int repairPasses = 0;            // that changed something

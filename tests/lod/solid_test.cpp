@@ -80,16 +80,21 @@ TEST(GreyImage, NeedsAnIsoValueThatVoxelsLieOnBothSidesOf) {
                 HasSubstr("usage: --band 4"));
 }
 
-TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
+TEST(Masks, GetTheirMidpointAndTheMaskFit) {
     Remarks remarks;
     const Solid solid = open(labelImage(false), {}, remarks.progress());
     EXPECT_THAT(remarks.text, HasSubstr("a mask, iso 0.5"));
     EXPECT_EQ(solid.input().kind, InputReport::Kind::mask);
     EXPECT_EQ(solid.input().iso, 0.5);
-    EXPECT_EQ(solid.fit()->method, FitMethod::binary);
+    EXPECT_EQ(solid.fit()->method, FitMethod::mask);
     EXPECT_TRUE(solid.fit()->repairAgreed);
-    EXPECT_EQ(solid.fit()->repairFloor, 0.05);
-    EXPECT_EQ(solid.fit()->filterPasses, 3);
+    EXPECT_EQ(solid.fit()->repaired, 0);
+    EXPECT_EQ(solid.fit()->gradientPasses, 60);
+    EXPECT_NEAR(*finestOf(solid).volumeError, 0, 0.03);
+    const Solid binary = open(labelImage(false), {.fit = FitMethod::binary});
+    EXPECT_EQ(binary.fit()->method, FitMethod::binary);
+    EXPECT_EQ(binary.fit()->repairFloor, 0.05);
+    EXPECT_EQ(binary.fit()->filterPasses, 3);
     EXPECT_EQ(finestOf(solid).topology.genus, 1);
 }
 
@@ -103,7 +108,7 @@ TEST(Labels, AreTakenTogetherOrOneByOne) {
     EXPECT_EQ(finestOf(ball).topology.genus, 0);
     EXPECT_EQ(ball.input().label, 2);
     EXPECT_EQ(ball.input().iso, std::nullopt);
-    EXPECT_EQ(ring.fit()->method, FitMethod::binary);
+    EXPECT_EQ(ring.fit()->method, FitMethod::mask);
     EXPECT_EQ(open(image, {.label = 1, .fit = FitMethod::distance}).fit()->method, FitMethod::distance);
     EXPECT_THAT(refusal([&] { open(image, {.label = 3}); }),
                 HasSubstr("no voxel has the label 3; labels found"));
@@ -116,7 +121,7 @@ TEST(Masks, SayTheVolumeOfTheirVoxels) {
     for (const float value : image.values) ++voxels[static_cast<std::size_t>(value)];
     const auto volume = [&](const SolidOptions& options) { return open(image, options).input().volume; };
     const double each = 3 * image.indexToWorld.axis[0][0] * image.indexToWorld.axis[1][1];
-    for (const FitMethod fit : {FitMethod::binary, FitMethod::distance}) {
+    for (const FitMethod fit : {FitMethod::mask, FitMethod::binary, FitMethod::distance}) {
         EXPECT_DOUBLE_EQ(volume({.fit = fit}).value(), each * (voxels[1] + voxels[2]));
         EXPECT_DOUBLE_EQ(volume({.label = 2, .fit = fit}).value(), each * voxels[2]);
     }
