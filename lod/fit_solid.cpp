@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+#include <cmath>
+
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "lod/memory.h"
+#include "lod/source.h"
 #include "volume/distance.h"
+#include "volume/leaf_words.h"
 
 namespace isowave::lod {
 namespace {
@@ -18,6 +23,7 @@ FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
         summary.band = fitting.distance.band;
     }
     summary.filterPasses = report.filterPasses;
+    summary.gradientPasses = report.gradientPasses;
     summary.latticePoints = report.latticePoints;
     summary.disagreeing = report.disagreeing;
     summary.repairPasses = report.repairPasses;
@@ -29,7 +35,7 @@ FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
 
 }  // namespace
 
-const char* nameOf(FitMethod method) { return method == FitMethod::binary ? "binary" : "distance"; }
+const char* nameOf(FitMethod method) { return kFitMethods[static_cast<std::size_t>(method)]; }
 
 Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
     Fitting fitting;
@@ -56,14 +62,16 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
     const auto allow = [&](double bytesEach, auto count) {
         refuseTooLarge(solid.name(), bytesEach * static_cast<double>(count), memoryLimit, remedy);
     };
-    if (fitting.method == FitMethod::binary) {
+    if (fitting.method != FitMethod::distance) {
         const NodeCollection nodes = [&] {
             const StageClock::Scope scope(clock, "nodes");
             return samples.nodes();
         }();
         allow(kBytesPerNode, nodes.nodeCount());
         const StageClock::Scope scope(clock, "fit");
-        solid.field = fitBinary(nodes, fitting.binary, &report, progress);
+        solid.field = fitting.method == FitMethod::binary
+                          ? fitBinary(nodes, fitting.binary, &report, progress)
+                          : fitMask(nodes, fitting.mask, &report, progress);
     } else {
         const openvdb::FloatGrid::Ptr grid = [&] {
             const StageClock::Scope scope(clock, "distance");
@@ -91,6 +99,18 @@ NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance) {
             tree.addTile(value.getLevel(), value.getCoord(), true, false);
     }
     return nodesFromSigns(*inside);
+}
+
+double volumeInside(const Shape& shape) {
+    std::int64_t count = 0;
+    for (auto leaf = shape.constTree().cbeginLeaf(); leaf; ++leaf)
+        for (const std::uint64_t word : insideWordsOf(*leaf)) count += std::popcount(word);
+    auto tile = shape.cbeginValueAll();
+    tile.setMaxDepth(openvdb::BoolTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile) count += static_cast<std::int64_t>(tile.getVoxelCount());
+    const openvdb::Mat4d indexToWorld = shape.transform().baseMap()->getAffineMap()->getMat4();
+    return static_cast<double>(count) * std::abs(indexToWorld.getMat3().det());
 }
 
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {

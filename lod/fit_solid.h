@@ -8,6 +8,7 @@
 #include "isowave/solid.h"
 #include "lod/solid_state.h"
 #include "volume/fit.h"
+#include "volume/fit/fit_mask.h"
 
 namespace isowave::lod {
 
@@ -15,6 +16,7 @@ struct Fitting {
     FitMethod method;
     DistanceFitOptions distance;
     BinaryFitOptions binary;
+    MaskFitOptions mask;
 };
 // fallback: the method where the options leave it open.
 Fitting fittingOf(const SolidOptions& options, FitMethod fallback);
@@ -22,7 +24,7 @@ Fitting fittingOf(const SolidOptions& options, FitMethod fallback);
 // Throws UsageError: --band is wider than --half-width.
 void checkFitOptions(const SolidOptions& options);
 
-// "binary", "distance"
+// "binary", "distance", "mask"
 const char* nameOf(FitMethod method);
 
 // Makes what the method needs, nodes or distances, each called at most once.
@@ -36,8 +38,11 @@ struct Samples {
 void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, double memoryLimit,
          const std::string& remedy, const Progress& progress, StageClock& clock);
 
-// The signs of a grid of distances, for fitBinary.
+// The signs of a grid of distances, for the fits that know nothing else.
 NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance);
+
+// Of the lattice points inside, each as large as a voxel of the transform; world units^3.
+double volumeInside(const Shape& shape);
 
 // Throws InputError where the field has only one side. remedy: "the image holds nothing but inside".
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy);

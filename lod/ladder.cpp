@@ -11,6 +11,7 @@
 #include "lod/budgets.h"
 #include "lod/level_mesher.h"
 #include "lod/pyramid_state.h"
+#include "lod/source.h"
 #include "lod/step_choice.h"
 #include "lod/steps.h"
 #include "polygonize/zero_set.h"
@@ -46,12 +47,12 @@ void putDeviation(LevelReport& report, const LevelMesh& level, const Progress& p
 class Maker {
   public:
     Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options,
-          const std::optional<Border>& openBorder, const LadderVisitor& visitor, const Progress& progress,
-          StageClock& clock)
+          const std::optional<Border>& openBorder, std::optional<double> inputVolume,
+          const LadderVisitor& visitor, const Progress& progress, StageClock& clock)
         : choice_(choice),
           budgets_(budgets),
           deviation_(options.deviation),
-          mesher_(options, openBorder, LevelMesher::Facts::thinToo, progress, clock),
+          mesher_(options, openBorder, LevelMesher::Facts::thinToo, inputVolume, progress, clock),
           visitor_(visitor),
           progress_(progress),
           clock_(clock) {}
@@ -210,7 +211,7 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     lod::checkBudgets(budgetOptions, border.has_value());
     lod::Budgets budgets(budgetOptions);
     const lod::StepChoice choice(options, budgets.wanted());
-    lod::Maker maker(choice, budgets, options, border, visitor, progress, clock);
+    lod::Maker maker(choice, budgets, options, border, solid.input().volume, visitor, progress, clock);
     Ladder ladder;
     ladder.input = solid.input();
     ladder.fit = solid.fit();
@@ -234,7 +235,8 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
     const double begin = clock.secondsSoFar();
-    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, progress, clock);
+    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, solid.input().volume,
+                            progress, clock);
     if (step != 0 && mesher.needsLevel0())
         mesher.make(0, state.field ? *state.field : state.pyramid->field(0, progress));
     const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
@@ -251,7 +253,9 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
 std::vector<LevelReport> describeLevels(const Pyramid& pyramid, const LevelOptions& options,
                                         const Progress& progress) {
     StageClock clock;
-    lod::LevelMesher mesher(options, std::nullopt, lod::LevelMesher::Facts::few, progress, clock);
+    const auto input = lod::inputOfSource(PyramidAccess::of(pyramid).source);
+    lod::LevelMesher mesher(options, std::nullopt, lod::LevelMesher::Facts::few,
+                            input ? input->volume : std::nullopt, progress, clock);
     std::vector<LevelReport> reports;
     SolidCounts before;
     for (int step = 0; step <= pyramid.stepCount(); step += kStepsPerLevel) {

@@ -31,7 +31,7 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;  // of level 0's volume
+constexpr double kPreserved = 1e-4;  // of the volume to keep
 constexpr int kFinestRefine = 4;     // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
@@ -70,11 +70,12 @@ struct LevelMesher::Level0 {
 };
 
 LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                         const Progress& progress, StageClock& clock)
+                         std::optional<double> inputVolume, const Progress& progress, StageClock& clock)
     : options_(options),
       openBorder_(openBorder),
       wantsThin_(options.hold == Holding::shift ||
                  (options.hold == Holding::none && facts == Facts::thinToo)),
+      inputVolume_(inputVolume),
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
@@ -96,6 +97,9 @@ void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& fi
     if (normals) mesh.normals = ZeroSet(field, iso).normalsOf(mesh, progress_);
 }
 
+// 0: neither is known.
+double LevelMesher::volumeToKeep() const { return inputVolume_.value_or(level0_ ? level0_->volume : 0); }
+
 // The volume without the specks that will be removed.
 double LevelMesher::isoPreservingVolume(const LevelMesh& level, double smallest) const {
     const StageClock::Scope scope(clock_, "choose iso");
@@ -104,12 +108,12 @@ double LevelMesher::isoPreservingVolume(const LevelMesh& level, double smallest)
         [&](double iso) {
             return volumeWithoutSpecks(polygonizeAt(field, iso, level.report.refine), smallest);
         },
-        level0_->volume, kIsoLimit * field.K);
-    const double error = match.volume / level0_->volume - 1;
+        volumeToKeep(), kIsoLimit * field.K);
+    const double error = match.volume / volumeToKeep() - 1;
     if (std::abs(error) > kPreserved)
-        progress_.say(
-            fmt::format("step {}: the volume of level 0 is out of reach: {:+.3g} % at iso {:+.3g} K",
-                        level.report.step, 100 * error, match.iso / field.K));
+        progress_.say(fmt::format("step {}: the volume of {} is out of reach: {:+.3g} % at iso {:+.3g} K",
+                                  level.report.step, inputVolume_ ? "the input" : "level 0", 100 * error,
+                                  match.iso / field.K));
     return match.iso;
 }
 
@@ -161,7 +165,7 @@ void LevelMesher::putIso(LevelMesh& level, double smallest) const {
         const double area = (before.area + topology.area) / 2;
         report.isoDistance = area > 0 ? (topology.volume - before.volume) / area : 0;
     }
-    if (level0_ && level0_->volume > 0) report.volumeError = topology.volume / level0_->volume - 1;
+    if (volumeToKeep() > 0) report.volumeError = topology.volume / volumeToKeep() - 1;
 }
 
 void LevelMesher::putFeatures(LevelMesh& level, const SpeckRemoval& removal) const {
@@ -219,9 +223,8 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {
     double iso = 0;
-    const int step = level.report.step;
-    if (step != 0 && level0_ && level0_->volume > 0 && options_.preserveVolume)
-        iso = isoPreservingVolume(level, smallestAt(step, level.field));
+    if (options_.preserveVolume && volumeToKeep() > 0)
+        iso = isoPreservingVolume(level, smallestAt(level.report.step, level.field));
     if (thin && options_.hold == Holding::shift)
         iso = isoThatKeeps(*thin, ThinParts::kShare, kIsoLimit * level.field.K);
     return iso;

@@ -24,9 +24,10 @@ struct LevelMesh {
 class LevelMesher {
   public:
     enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
-    // Throws UsageError for options that exclude each other.
+    // inputVolume: that of the solid's input, world units^3, which levels are measured against and keep with
+    // preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
     LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                const Progress& progress, StageClock& clock);
+                std::optional<double> inputVolume, const Progress& progress, StageClock& clock);
     ~LevelMesher();
 
     // Whether make() must have seen step 0 before any other.
@@ -56,6 +57,7 @@ class LevelMesher {
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
     bool compacts(int refine) const;
     void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine);
+    double volumeToKeep() const;
     double isoPreservingVolume(const LevelMesh& level, double smallest) const;
     std::vector<double> thinValues(const BSplineField& field, int refine) const;
     void putIso(LevelMesh& level, double smallest) const;
@@ -64,6 +66,7 @@ class LevelMesher {
     const LevelOptions options_;
     std::optional<Border> openBorder_;
     bool wantsThin_;
+    std::optional<double> inputVolume_;
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

@@ -65,7 +65,7 @@ ImagePlan planForLabel(const ImageStatistics& statistics, const std::string& nam
                                                  label, statistics.low, statistics.high)
                                    : fmt::format("no voxel has the label {}; labels found: {}", label,
                                                  labelList(statistics.distinct)));
-    return {InputReport::Kind::labels, 0.5, FitMethod::binary};
+    return {InputReport::Kind::labels, 0.5, FitMethod::mask};
 }
 
 ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const std::string& name,
@@ -79,9 +79,9 @@ ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const s
 
     ImagePlan plan;
     if (statistics.distinct.size() == 2)
-        plan = {InputReport::Kind::mask, (double{statistics.low} + statistics.high) / 2, FitMethod::binary};
+        plan = {InputReport::Kind::mask, (double{statistics.low} + statistics.high) / 2, FitMethod::mask};
     else if (looksLikeLabels(image, statistics) && !options.iso)
-        plan = {InputReport::Kind::labels, 0.5, FitMethod::binary};
+        plan = {InputReport::Kind::labels, 0.5, FitMethod::mask};
     else if (!options.iso)
         throw UsageError(
             fmt::format("{}: --iso is missing; values run from {}", name, rangeText(statistics)));
@@ -176,6 +176,8 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     };
     fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
         clock);
+    if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
+        solid.input.volume = volumeInside(*solid.field->shape);
     requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
     return solid;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/number_text.h"
+#include "base/triangle.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
@@ -54,6 +55,24 @@ ClosedMesh closed(LoadedMesh loaded, const std::string& name, const Progress& pr
     return result;
 }
 
+// The mesh's own volume: the integral of its winding number. That counts what lies in two parts twice, and nothing where
+// orientation is lost; so it is only taken where the lattice points inside, whose number errs by no more than half a
+// voxel along the surface, agree with it.
+std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, double voxel) {
+    if (input.repair.evenOdd) return std::nullopt;
+    const TriangleMesh& mesh = input.loaded.mesh;
+    const Vec3 from = toVec3(mesh.points.front());
+    double six = 0, twiceArea = 0;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 normal = areaNormal(mesh, t);
+        six += dot(toVec3(mesh.points[t[0]]) - from, normal);
+        twiceArea += length(normal);
+    }
+    const double volume = std::abs(six) / 6;
+    if (std::abs(volumeInside(shape) - volume) > 0.5 * voxel * twiceArea / 2) return std::nullopt;
+    return volume;
+}
+
 InputReport reportOf(const ClosedMesh& input, const std::string& name, double voxel) {
     InputReport report;
     report.path = name;
@@ -93,6 +112,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
     };
     fit(solid, fitting, {[&] { return nodesOfDistance(*distance()); }, distance}, limit, kRemedy, progress,
         clock);
+    solid.input.volume = volumeOf(input, *solid.field->shape, voxel);
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

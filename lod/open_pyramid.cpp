@@ -20,6 +20,7 @@ Solid::State openPyramid(const std::filesystem::path& path, int finestStep, Stag
     input.dimensions = input.madeFrom->dimensions;
     input.spacing = input.madeFrom->spacing;
     input.iso = input.madeFrom->iso;
+    input.volume = input.madeFrom->volume;
     input.space = input.madeFrom->space;
     solid.openBorder = borderOf(*input.madeFrom);
     solid.space = input.space.value_or(Space::unspecified);

@@ -59,7 +59,7 @@ Fields fieldsOfPyramid(const InputReport& input) {
     const Fields source = under("input.", input.source);
     if (source.empty()) return std::move(list).fields();
     const Json object = objectOf(source);
-    for (const char* key : {"dimensions", "spacing", "iso", "space"})
+    for (const char* key : {"dimensions", "spacing", "iso", "volume", "space"})
         if (object.contains(key)) list.put(key, object[key]);
     list.put("source", object);
     return std::move(list).fields();
@@ -73,6 +73,7 @@ Fields fieldsOfMesh(const InputReport& input) {
     list.putIf("dimensions", input.dimensions);
     list.putIf("spacing", input.spacing);
     list.putIf("triangles", input.triangles);
+    list.putIf("volume", input.volume);
     list.put("repair", input.repairNotes);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
     return std::move(list).fields();
@@ -92,6 +93,7 @@ Fields fieldsOfLattice(const InputReport& input) {
     list.putIf("iso", input.iso);
     list.putIf("inverted", input.inverted);
     list.putIf("open_border", input.openBorder);
+    list.putIf("volume", input.volume);
     list.putIf("origin", input.origin);
     list.putIf("direction", input.direction);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
@@ -138,11 +140,10 @@ Fields fieldsOf(const std::optional<FitSummary>& fit, const InputReport& input) 
     if (input.kind == InputReport::Kind::pyramid) return under("fit.", input.source);
     FieldList list;
     if (!fit) return {};
-    const bool binary = fit->method == FitMethod::binary;
-    list.put("method", binary ? "binary" : "distance");
-    if (binary) {
-        list.put("filter_passes", fit->filterPasses);
-    } else {
+    list.put("method", kFitMethods[static_cast<std::size_t>(fit->method)]);
+    if (fit->method == FitMethod::binary) list.put("filter_passes", fit->filterPasses);
+    if (fit->method == FitMethod::mask) list.put("gradient_passes", fit->gradientPasses);
+    if (fit->method == FitMethod::distance) {
         list.put("half_width", fit->halfWidth);
         list.put("band", fit->band);
     }
@@ -181,6 +182,7 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
     input->origin = valueOf<std::array<double, 3>>(json, "origin");
     input->direction = valueOf<std::array<std::array<double, 3>, 3>>(json, "direction");
     input->triangles = valueOf<std::int64_t>(json, "triangles");
+    input->volume = valueOf<double>(json, "volume");
     input->repairNotes =
         valueOf<std::vector<std::string>>(json, "repair").value_or(std::vector<std::string>());
     input->space = choiceOf<Space>(json, "space", kSpaces);
@@ -189,13 +191,14 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
 
 std::optional<FitSummary> fitOfSource(const Source& source) {
     const Json json = objectOf(under("fit.", source));
-    const auto method = choiceOf<FitMethod>(json, "method", std::array{"binary", "distance"});
+    const auto method = choiceOf<FitMethod>(json, "method", kFitMethods);
     if (!method) return std::nullopt;
     FitSummary fit;
     fit.method = *method;
     fit.halfWidth = valueOf<double>(json, "half_width").value_or(0);
     fit.band = valueOf<double>(json, "band").value_or(0);
     fit.filterPasses = valueOf<int>(json, "filter_passes").value_or(0);
+    fit.gradientPasses = valueOf<int>(json, "gradient_passes").value_or(0);
     fit.latticePoints = valueOf<std::int64_t>(json, "lattice_points").value_or(0);
     fit.disagreeing = valueOf<std::int64_t>(json, "disagreeing").value_or(0);
     fit.repairPasses = valueOf<int>(json, "repair_passes").value_or(0);

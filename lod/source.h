@@ -2,6 +2,7 @@
 // show. The one place that knows the keys.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@ std::optional<Border> borderOf(const InputReport& input);
 
 // "mask", "labels", "grey image", "mesh", "level set", "pyramid"
 const char* nameOf(InputReport::Kind kind);
+inline constexpr std::array<const char*, 3> kFitMethods{"binary", "distance", "mask"};
 // "lps", "ras", "unspecified"
 const char* nameOf(Space space);
 

@@ -1,37 +1,17 @@
 // From signs or distances to a B-spline field whose sign agrees with the input at every lattice point near
-// the surface. One function each; see docs/volume.md for the passes and what was measured.
+// the surface. One function each, and volume/fit/fit_mask.h has a third; see docs/volume.md for the passes and what was
+// measured.
 #pragma once
-
-#include <cstdint>
 
 #include "isowave/progress.h"
 #include "volume/field.h"
+#include "volume/fit/report.h"
 
 namespace isowave {
 
 // Both fits move the lattice's origin, by a multiple of 8 on each axis, where control points would lie below
 // -1, and shift the transform the other way: every field then ends at a single node. World coordinates do not
 // change.
-
-struct FitReport {
-    // Lattice points whose sign was compared with the input's: I dilated by one, all those where a known
-    // control point has a say.
-    std::int64_t latticePoints = 0;
-    // Of these, how many disagree in the end. The repair works on those of I and leaves none there unless it
-    // gave up; those beside I keep their sign because nothing crosses zero so far from the surface.
-    std::int64_t disagreeing = 0;
-    int filterPasses = 0;  // Laplacian passes (fitBinary)
-    int repairPasses = 0;  // passes that changed something
-    // The repair stopped because every lattice point of I had its sign by the floor; false: at
-    // kMostRepairPasses.
-    bool repairAgreed = true;
-    double repairFloor = 0;     // of K: what s F has to reach for that
-    std::int64_t repaired = 0;  // control points changed by the repair, counted once a pass
-};
-
-// Where the repair gives up. White noise at 50 % takes 20 passes: that many times over means that it cannot
-// succeed.
-inline constexpr int kMostRepairPasses = 1000;
 
 struct BinaryFitOptions {
     int passes = 3;  // Laplacian passes; 3 smooths staircases, 0 leaves the ±K weights
@@ -47,7 +27,7 @@ struct DistanceFitOptions {
 };
 
 // E§2: ±K weights on I (G dilated by {-1,0,1,2}), `passes` of the discrete Laplacian filter on I, then the
-// repair. For masks and labels, whose distances would be staircases.
+// repair.
 BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options = {},
                        FitReport* report = nullptr, const Progress& progress = {});
 

@@ -56,13 +56,14 @@ struct LevelOptions {
     // brought back to about the triangles of 1.
     std::optional<int> refine = {};
     Holding hold = Holding::local;
-    bool compact = false;         // collapse what refine > 1 gives down to the triangles of refine = 1
-    bool refit = false;           // fit the field of a level once more to level 0's surface
-    bool preserveVolume = false;  // choose the iso-value at which a level has the volume of level 0
-    bool keepSpecks = false;      // components smaller than a node stay
-    bool features = false;        // measure parts, holes and cavities of level 0 and tell what became of them
-    int relax = 0;                // rounds of sliding vertices along the surface
-    bool deviation = false;       // measure triangles against the zero set
+    bool compact = false;  // collapse what refine > 1 gives down to the triangles of refine = 1
+    bool refit = false;    // fit the field of a level once more to level 0's surface
+    bool preserveVolume =
+        false;                // choose the iso-value at which a level has the input's volume, else level 0's
+    bool keepSpecks = false;  // components smaller than a node stay
+    bool features = false;    // measure parts, holes and cavities of level 0 and tell what became of them
+    int relax = 0;            // rounds of sliding vertices along the surface
+    bool deviation = false;   // measure triangles against the zero set
 };
 
 // Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
@@ -139,7 +140,8 @@ struct LevelReport {
     std::optional<double>
         isoDistance;  // by which that moved the surface, world units; empty at an open border
     std::optional<double> volumeAtIso0;
-    std::optional<double> volumeError;               // volume / level 0's - 1
+    std::optional<double>
+        volumeError;  // volume / input.volume - 1, or / level 0's - 1 where the input has none
     std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
     std::optional<HoldSummary> hold;  // Holding::local: what it took; nothing where nothing is thin
     std::optional<FeatureReport> features;

@@ -27,9 +27,10 @@
 
 namespace isowave {
 
-// From samples to a field. binary: from inside and outside alone, for masks and labels. distance: from signed distances,
-// for everything else.
-enum class FitMethod { binary, distance };
+// From samples to a field. mask: from inside and outside alone, smooth and with the volume of the voxels, for masks and
+// labels. distance: from signed distances, for everything else. binary: from inside and outside alone, by filtered weights,
+// as Esteve, Brunet and Vinacua have it.
+enum class FitMethod { binary, distance, mask };
 
 // Names in messages are those of the command's options.
 struct SolidOptions {
@@ -50,7 +51,7 @@ struct SolidOptions {
     int finestStep = 0;  // of a pyramid's file only what this step and coarser ones need is read
 
     // ---- the fit
-    std::optional<FitMethod> fit = {};     // default: binary for masks and labels, distance else
+    std::optional<FitMethod> fit = {};     // default: mask for masks and labels, distance else
     std::optional<double> halfWidth = {};  // voxels each side in which distances are known; default 4
     // Voxels each side that the field is kept for, at most halfWidth; default 2.
     std::optional<double> band = {};
@@ -78,7 +79,10 @@ struct InputReport {
         direction;                          // unit vectors along the lattice's axes, LPS
     std::optional<std::int64_t> triangles;  // of a mesh, as read
     std::vector<std::string> repairNotes;   // what was mended in it, a line each
-    std::optional<Space> space;             // axes that meshes of the solid have
+    // World units^3. Masks and labels: voxels inside times the volume of one, unless the border is open. Meshes: their
+    // own, unless parts of them overlap or the orientation cannot be trusted. Others do not say.
+    std::optional<double> volume;
+    std::optional<Space> space;  // axes that meshes of the solid have
 
     // Of a pyramid: what its file says about the solid that it was made of, "input.path" -> "\"part.stl\"", values as
     // JSON; and the same with types, as far as it is understood.
@@ -91,6 +95,7 @@ struct FitSummary {
     FitMethod method = FitMethod::distance;
     double halfWidth = 0, band = 0;  // voxels each side; distance fit
     int filterPasses = 0;            // of the Laplacian; binary fit
+    int gradientPasses = 0;          // mask fit
     std::int64_t latticePoints = 0;  // whose sign was compared with the input's
     std::int64_t disagreeing = 0;    // of these, in the end
     int repairPasses = 0;            // that changed something

@@ -36,6 +36,9 @@ TEST_F(RingPyramid, IsAnInputLikeTheSolidItself) {
     EXPECT_EQ(again.input.kind, InputReport::Kind::pyramid);
     EXPECT_EQ(again.input.madeFrom->path, direct.input.path);
     EXPECT_EQ(again.input.madeFrom->triangles, direct.input.triangles);
+    EXPECT_EQ(again.input.volume, direct.input.volume);
+    EXPECT_EQ(again.input.madeFrom->volume, direct.input.volume);
+    EXPECT_EQ(again.levels[1].report.volumeError.has_value(), direct.input.volume.has_value());
     EXPECT_EQ(again.fit->method, direct.fit->method);
     EXPECT_EQ(again.fit->repaired, direct.fit->repaired);
     EXPECT_EQ(again.steps, direct.steps);

@@ -80,16 +80,21 @@ TEST(GreyImage, NeedsAnIsoValueThatVoxelsLieOnBothSidesOf) {
                 HasSubstr("usage: --band 4"));
 }
 
-TEST(Masks, GetTheirMidpointAndTheBinaryFit) {
+TEST(Masks, GetTheirMidpointAndTheMaskFit) {
     Remarks remarks;
     const Solid solid = open(labelImage(false), {}, remarks.progress());
     EXPECT_THAT(remarks.text, HasSubstr("a mask, iso 0.5"));
     EXPECT_EQ(solid.input().kind, InputReport::Kind::mask);
     EXPECT_EQ(solid.input().iso, 0.5);
-    EXPECT_EQ(solid.fit()->method, FitMethod::binary);
+    EXPECT_EQ(solid.fit()->method, FitMethod::mask);
     EXPECT_TRUE(solid.fit()->repairAgreed);
-    EXPECT_EQ(solid.fit()->repairFloor, 0.05);
-    EXPECT_EQ(solid.fit()->filterPasses, 3);
+    EXPECT_EQ(solid.fit()->repaired, 0);
+    EXPECT_EQ(solid.fit()->gradientPasses, 60);
+    EXPECT_NEAR(*finestOf(solid).volumeError, 0, 0.03);
+    const Solid binary = open(labelImage(false), {.fit = FitMethod::binary});
+    EXPECT_EQ(binary.fit()->method, FitMethod::binary);
+    EXPECT_EQ(binary.fit()->repairFloor, 0.05);
+    EXPECT_EQ(binary.fit()->filterPasses, 3);
     EXPECT_EQ(finestOf(solid).topology.genus, 1);
 }
 
@@ -103,10 +108,25 @@ TEST(Labels, AreTakenTogetherOrOneByOne) {
     EXPECT_EQ(finestOf(ball).topology.genus, 0);
     EXPECT_EQ(ball.input().label, 2);
     EXPECT_EQ(ball.input().iso, std::nullopt);
-    EXPECT_EQ(ring.fit()->method, FitMethod::binary);
+    EXPECT_EQ(ring.fit()->method, FitMethod::mask);
     EXPECT_EQ(open(image, {.label = 1, .fit = FitMethod::distance}).fit()->method, FitMethod::distance);
     EXPECT_THAT(refusal([&] { open(image, {.label = 3}); }),
                 HasSubstr("no voxel has the label 3; labels found"));
+}
+
+TEST(Masks, SayTheVolumeOfTheirVoxels) {
+    Image image = labelImage();
+    image.indexToWorld.axis[2][2] = 3;
+    std::array<double, 3> voxels{};
+    for (const float value : image.values) ++voxels[static_cast<std::size_t>(value)];
+    const auto volume = [&](const SolidOptions& options) { return open(image, options).input().volume; };
+    const double each = 3 * image.indexToWorld.axis[0][0] * image.indexToWorld.axis[1][1];
+    for (const FitMethod fit : {FitMethod::mask, FitMethod::binary, FitMethod::distance}) {
+        EXPECT_DOUBLE_EQ(volume({.fit = fit}).value(), each * (voxels[1] + voxels[2]));
+        EXPECT_DOUBLE_EQ(volume({.label = 2, .fit = fit}).value(), each * voxels[2]);
+    }
+    EXPECT_EQ(volume({.openBorder = true}), std::nullopt) << "the solid goes on beyond the voxels";
+    EXPECT_EQ(volume({.iso = 0.3}), std::nullopt) << "the surface lies between the voxels";
 }
 
 // A NIfTI file whose voxels are scaled.
@@ -203,6 +223,21 @@ TEST(MeshSolid, KeepsTheHoleOfARing) {
     const double volume = 2 * kPi * kPi * 20 * 64;
     EXPECT_EQ(ring.genus, 1);
     EXPECT_NEAR(ring.volume, volume, 0.03 * volume);  // the polyhedron is smaller
+}
+
+TEST(MeshSolid, SaysItsOwnVolumeUnlessPartsOverlap) {
+    const TriangleMesh ring = ringMesh();
+    const double volume = topologyOf(ring).volume;
+    EXPECT_NEAR(open(ring, {.voxels = 32}).input().volume.value(), volume, 1e-9 * volume);
+    TriangleMesh insideOut = ring;
+    for (Triangle& t : insideOut.triangles) std::swap(t[0], t[1]);
+    EXPECT_NEAR(open(insideOut, {.voxels = 32}).input().volume.value(), volume, 1e-9 * volume);
+    TriangleMesh overlapping = ring;
+    for (Point p : ring.points) overlapping.points.push_back({p[0], p[1], p[2] + 4});
+    const auto more = static_cast<std::uint32_t>(ring.points.size());
+    for (const auto& [a, b, c] : ring.triangles)
+        overlapping.triangles.push_back({a + more, b + more, c + more});
+    EXPECT_EQ(open(overlapping, {.voxels = 32}).input().volume, std::nullopt);
 }
 
 TEST(MeshSolid, TakesTheVoxelSizeOrTheCountOrADefaultThatItNames) {

@@ -21,7 +21,7 @@ TEST(Help, ListsEverySubcommandAndEveryExitCode) {
 TEST(Help, ListsTheDocumentedOptionsOfLod) {
     const std::string text = succeed({"lod", "--help"}).out;
     for (const char* option :
-         {"--iso V",         "--label L",     "--voxels N",    "--voxel LEN",  "--fit binary|distance",
+         {"--iso V",         "--label L",     "--voxels N",    "--voxel LEN",  "--fit mask|binary|distance",
           "--half-width W",  "--band B",      "--levels A..B", "--steps A..B", "--format stl|ply|obj|off|glb",
           "--space lps|ras", "--open-border", "--threads N",   "--json FILE",  "--quiet",
           "--invert",        "--size",        "--type",        "--spacing",    "--endian",
@@ -76,7 +76,7 @@ TEST(Completion, OffersSubcommandsOptionsAndChoices) {
     EXPECT_EQ(completed({"isowave", "co"}), "compare completion");
     EXPECT_EQ(completed({"isowave", "lod", "a.stl", "--vox"}), "--voxels --voxel");
     EXPECT_EQ(completed({"isowave", "lod", "--format", "o"}), "obj off");
-    EXPECT_EQ(completed({"isowave", "lod", "--fit", ""}), "binary distance");
+    EXPECT_EQ(completed({"isowave", "lod", "--fit", ""}), "mask binary distance");
     EXPECT_EQ(completed({"isowave", "check", "--vox"}), "") << "check samples nothing";
 }
 

@@ -29,10 +29,13 @@ void declareInside(OptionList& options, SolidOptions& solid) {
 }
 
 void declareFit(OptionList& options, SolidOptions& solid) {
-    options.value("--fit", "binary|distance", "binary for masks and labels, otherwise distance",
-                  "from signs alone (filtered weights), or from signed distances", [&](const std::string& v) {
-                      solid.fit = choice<FitMethod>(
-                          v, {{"binary", FitMethod::binary}, {"distance", FitMethod::distance}});
+    options.value("--fit", "mask|binary|distance", "mask for masks and labels, otherwise distance",
+                  "from signs alone, smooth and with the volume of the voxels (mask) or by filtered weights "
+                  "(binary); or from signed distances",
+                  [&](const std::string& v) {
+                      solid.fit = choice<FitMethod>(v, {{"mask", FitMethod::mask},
+                                                        {"binary", FitMethod::binary},
+                                                        {"distance", FitMethod::distance}});
                   });
     options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
                   [&](const std::string& v) { solid.halfWidth = positive(v); });
@@ -42,7 +45,8 @@ void declareFit(OptionList& options, SolidOptions& solid) {
 
 void declareLevelIso(OptionList& options, LevelOptions& level) {
     options.flag("--preserve-volume",
-                 "each level at the iso-value that gives it the volume of level 0, to 0.01 %",
+                 "each level at the iso-value that gives it the input's volume (level 0's where it is not "
+                 "known), to 0.01 %",
                  level.preserveVolume);
     options.value("--hold", "local|shift|none", "local",
                   "walls and rods thinner than a level's voxel stay whole: by a change beside them alone; by "

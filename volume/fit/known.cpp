@@ -1,0 +1,109 @@
+#include "volume/fit/known.h"
+
+#include <openvdb/tools/Morphology.h>
+
+#include <vector>
+
+#include "volume/padded_leaf.h"
+
+namespace isowave::fitting {
+namespace {
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+using Mask = openvdb::MaskTree;
+using MaskLeaf = Mask::LeafNodeType;
+
+template <class Tree>
+using ConstAccessor = openvdb::tree::ValueAccessor<const Tree>;
+
+// The lattice points that are corners of a kept node: voxel i is one when a node of i - {0,1}^3 is kept.
+Mask cornersOf(const Mask& nodes) {
+    Mask corners;
+    openvdb::tree::ValueAccessor<Mask> toTouch(corners);
+    for (auto leaf = nodes.cbeginLeaf(); leaf; ++leaf)
+        for (int b = 0; b < 8; ++b)
+            toTouch.touchLeaf(leaf->origin().offsetBy(8 * (b >> 2), 8 * ((b >> 1) & 1), 8 * (b & 1)));
+    openvdb::tree::LeafManager<Mask> leaves(corners);
+    leaves.foreach ([&nodes](MaskLeaf& leaf, std::size_t) {
+        ConstAccessor<Mask> accessor(nodes);
+        PaddedLeaf<bool, 1, 0> kept;
+        kept.gather(accessor, leaf.origin(),
+                    [](const MaskLeaf& l, openvdb::Index o) { return l.isValueOn(o); });
+        LeafWords corner{};
+        for (int x = 0; x < 8; ++x)
+            for (int y = 0; y < 8; ++y) {
+                const auto row = [&](int dx, int dy) { return &kept.values[kept.index(x - dx, y - dy, 0)]; };
+                const bool *a = row(0, 0), *b = row(0, 1), *c = row(1, 0), *d = row(1, 1);
+                for (int z = 0; z < 8; ++z) {
+                    const bool any = a[z] | b[z] | c[z] | d[z] | a[z - 1] | b[z - 1] | c[z - 1] | d[z - 1];
+                    corner[x] |= std::uint64_t(any) << (8 * y + z);
+                }
+            }
+        leaf.setValueMask(maskOf(corner));
+    });
+    return corners;
+}
+
+}  // namespace
+
+Mask knownAround(const Mask& nodes) {
+    Mask known = cornersOf(nodes);
+    openvdb::tools::dilateActiveValues(known, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::EXPAND_TILES);
+    known.voxelizeActiveTiles();
+    // Leaves without a single known point would only cost memory.
+    std::vector<openvdb::Coord> empty;
+    for (auto leaf = known.cbeginLeaf(); leaf; ++leaf)
+        if (leaf->isEmpty()) empty.push_back(leaf->origin());
+    for (const auto& origin : empty) known.addTile(1, origin, false, false);
+    return known;
+}
+
+openvdb::Coord moveOrigin(Mask& known) {
+    openvdb::CoordBBox box;
+    known.evalActiveVoxelBoundingBox(box);
+    openvdb::Coord shift(0);
+    if (known.empty()) return shift;
+    for (int a = 0; a < 3; ++a)
+        if (box.min()[a] < -1) shift[a] = -(box.min()[a] & ~7);
+    if (shift == openvdb::Coord(0)) return shift;
+    std::vector<MaskLeaf*> leaves;
+    known.stealNodes(leaves);
+    Mask moved;
+    for (MaskLeaf* leaf : leaves) {
+        leaf->setOrigin(leaf->origin() + shift);
+        moved.addLeaf(leaf);
+    }
+    known.clear();
+    known.merge(moved);
+    return shift;
+}
+
+openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& transform,
+                                               const openvdb::Coord& shift) {
+    auto result = transform.copy();
+    result->preTranslate(-shift.asVec3d());
+    return result;
+}
+
+BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transform& transform) {
+    BSplineField field;
+    field.K = K;
+    field.shape = std::move(shape);
+    field.shape->setTransform(transform.copy());
+    const auto k = static_cast<float>(K);
+    field.controlPoints = openvdb::FloatGrid::create(k);
+    field.controlPoints->setTree(
+        std::make_shared<openvdb::FloatTree>(field.shape->tree(), k, k, openvdb::TopologyCopy()));
+    field.controlPoints->setTransform(transform.copy());
+    field.controlPoints->setName("field");
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
+    const openvdb::BoolTree& signs = field.shape->tree();
+    leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
+        fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
+    });
+    fillInsideTiles(field.controlPoints->tree(), signs, -1, -k);
+    return field;
+}
+
+}  // namespace isowave::fitting
