@@ -242,7 +242,7 @@ Sample sample(const RowField<Real>& field, Point lattice) {
     template struct RowField<Real>;                                \
     template class RowReader<Real>;                                \
     template RowField<Real> transposed(const RowField<Real>&);     \
-    template RowField<Real> onHalfSpacing(const RowField<Real>&);   \
+    template RowField<Real> onHalfSpacing(const RowField<Real>&);  \
     template std::int64_t definedNodeCount(const RowField<Real>&); \
     template Sample sample(const RowField<Real>&, Point);
 ISOWAVE_INSTANTIATE(float)

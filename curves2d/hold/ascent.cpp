@@ -66,8 +66,7 @@ std::int32_t Ascent::baseOf(std::int32_t x, std::int32_t y) const {
 void Ascent::add(const Constraint& row) {
     const auto x = static_cast<std::int32_t>(std::floor(row.at.x)),
                y = static_cast<std::int32_t>(std::floor(row.at.y));
-    Held held{{},         {x, y},     row.at.x - x, row.at.y - y, row.side,
-              row.offset, row.softness, 0,            true};
+    Held held{{}, {x, y}, row.at.x - x, row.at.y - y, row.side, row.offset, row.softness, 0, true};
     int count = 0;
     for (std::int32_t k = 0; k < 4; ++k) {
         held.base[static_cast<std::size_t>(k)] = baseOf(x - 1, y - 1 + k);
@@ -88,8 +87,8 @@ void Ascent::cutIntoSquares() {
     std::vector<Key> keys;
     keys.reserve(rows_.size());
     for (std::uint32_t i = 0; i < rows_.size(); ++i)
-        keys.push_back({floorDivided(rows_[i].node[1], kSquare), floorDivided(rows_[i].node[0], kSquare),
-                        mixed(i), i});
+        keys.push_back(
+            {floorDivided(rows_[i].node[1], kSquare), floorDivided(rows_[i].node[0], kSquare), mixed(i), i});
     std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
         return std::tie(a.y, a.x, a.hash) < std::tie(b.y, b.x, b.hash);
     });
@@ -153,8 +152,8 @@ double Ascent::sweep(const std::vector<std::uint32_t>& squares, bool active, boo
         }
         const std::size_t count = square.active.size();
         for (std::size_t k = 0; k < count; ++k)
-            most[s] = std::max(most[s], visit(rows_[square.active[backwards ? count - 1 - k : k]], isActive,
-                                              tolerance));
+            most[s] = std::max(
+                most[s], visit(rows_[square.active[backwards ? count - 1 - k : k]], isActive, tolerance));
     });
     return most.empty() ? 0 : *std::max_element(most.begin(), most.end());
 }

@@ -51,7 +51,8 @@ class Ascent {
 
   private:
     struct Held {
-        std::array<std::int32_t, 4> base;  // of the four rows of control points: index of the first one of four
+        std::array<std::int32_t, 4>
+            base;  // of the four rows of control points: index of the first one of four
         std::array<std::int32_t, 2> node;
         double tx, ty;  // place in the node
         double side, offset, softness, lambda;

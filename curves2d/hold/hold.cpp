@@ -12,17 +12,18 @@
 namespace isowave::curves2d {
 namespace {
 
-// Parts of H, but for the softness.
+// In steps h of the lattice, but for the reach, in pixels H of the level, and the softness.
 constexpr double kCell = 0.25;
-constexpr double kHalfThickness = 0.45;  // at r = 1
-constexpr double kDepth = 0.02;
-constexpr double kMargin = 0.08;
-constexpr double kNearCurve = 1.25, kNearPlane = 1.5;  // how far soft constraints lie from a sample
-constexpr double kPlaneFrom = kMargin + 0.15, kPlaneTo = 0.9, kPlaneCell = 0.5;
+constexpr double kHalfThickness = 0.45;
+constexpr double kDepth = 0.1;
+constexpr double kMargin = 0.02;
+constexpr double kPlaneFrom = 0.17, kPlaneTo = 0.9, kPlaneCell = 0.5;
 constexpr double kTolerance = 0.005;
 constexpr double kClear = 0.8;  // of an outer point's distance
-constexpr double kSoft = 0.1, kHard = 0.002;
+constexpr double kCurveReach = 1.25, kPlaneReach = 1.5;
+constexpr double kSoft = 0.005, kHard = 0.002;
 constexpr int kMostRounds = 40;
+constexpr int kFinest = 4, kOfSamples = 50;
 
 std::vector<Point> placesOf(const std::vector<ThinSample>& samples) {
     std::vector<Point> places;
@@ -42,39 +43,38 @@ std::vector<ThinSample> thinnestOfEachCell(const std::vector<ThinSample>& sample
 // Collects the constraints of one level and lets them act.
 class Holder {
   public:
-    Holder(RowField<float>& field, const Outline& outline, std::vector<ThinSample> samples, double H,
-           int sampling, Point spacing)
+    Holder(RowField<float>& field, const HoldTask& task)
         : field_(field),
-          outline_(outline),
-          samples_(std::move(samples)),
-          near_(placesOf(samples_), kNearPlane * H),
-          H_(H),
-          half_(kHalfThickness * H / sampling),
-          spacing_(spacing),
+          outline_(task.outline),
+          samples_(thinnestOfEachCell(task.samples, kCell * task.spacing)),
+          near_(placesOf(samples_), kPlaneReach * task.H),
+          H_(task.H),
+          h_(task.spacing),
+          half_(kHalfThickness * h_),
           ascent_(field) {}
 
-    std::int64_t run(const Progress& progress) {
+    void run(const Progress& progress) {
         addHard(kHard);
         addAlongCurve();
         addInPlane();
-        const double tolerance = kTolerance * H_ * outline_.slope();
+        const double tolerance = kTolerance * h_ * outline_.slope();
         ascent_.run(tolerance, kMostRounds, progress);
         ascent_.clear();
         addHard(0);
         ascent_.run(tolerance, kMostRounds, progress);
-        return ascent_.write(field_);
+        ascent_.write(field_);
     }
 
   private:
     double grown(const ThinSample& sample) const { return std::max(0.0, half_ - sample.thickness / 2); }
 
     void add(Point at, double side, double offset, double softness) {
-        ascent_.add({{at.x / spacing_.x, at.y / spacing_.y}, side, offset * outline_.slope(), softness});
+        ascent_.add({(1 / h_) * at, side, offset * outline_.slope(), softness});
     }
 
     void addHard(double softness) {
         for (const ThinSample& sample : samples_) {
-            add(sample.at, 1, kDepth * H_, softness);
+            add(sample.at, 1, kDepth * h_, softness);
             add(sample.at + half_ * sample.normal, 1, 0, softness);
             add(sample.at - half_ * sample.normal, 1, 0, softness);
         }
@@ -85,7 +85,7 @@ class Holder {
         std::vector<Point> places;
         for (const OutlinePoint& p : outline_.points()) places.push_back(p.at);
         const std::vector<std::uint32_t> chosen =
-            oneOfEachCell(places, std::vector<double>(places.size(), 0), std::max(kCell * H_, 0.5));
+            oneOfEachCell(places, std::vector<double>(places.size(), 0), std::max(kCell * h_, 0.5));
         struct Pair {
             bool outer = false, inner = false;
             Point out, in;
@@ -93,16 +93,15 @@ class Holder {
         std::vector<Pair> pairs(chosen.size());
         tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {
             const OutlinePoint& p = outline_.points()[chosen[i]];
-            const auto nearest = near_.nearest(p.at, kNearCurve * H_);
+            const auto nearest = near_.nearest(p.at, kCurveReach * H_);
             if (!nearest) return;
             const ThinSample& sample = samples_[nearest->index];
-            const double out = grown(sample) + kMargin * H_;
+            const double out = grown(sample) + kMargin * h_;
             const Interior& interior = outline_.interior();
             pairs[i].out = p.at + out * p.normal;
             pairs[i].outer = interior.away(pairs[i].out, out) >= kClear * out;
-            pairs[i].in = p.at - kMargin * H_ * p.normal;
-            pairs[i].inner =
-                sample.thickness / 2 - kMargin * H_ > half_ && interior.inside(pairs[i].in);
+            pairs[i].in = p.at - kMargin * h_ * p.normal;
+            pairs[i].inner = sample.thickness / 2 - kMargin * h_ > half_ && interior.inside(pairs[i].in);
         });
         for (const Pair& pair : pairs) {
             if (pair.outer) add(pair.out, -1, 0, kSoft);
@@ -112,15 +111,15 @@ class Holder {
 
     // Points farther out.
     void addInPlane() {
-        const double cell = kPlaneCell * H_;
+        const double cell = kPlaneCell * h_;
         const std::vector<Point> points = pointsNearSamples(cell);
         std::vector<char> wanted(points.size(), 0);
         tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-            const auto nearest = near_.nearest(points[i], kNearPlane * H_);
+            const auto nearest = near_.nearest(points[i], kPlaneReach * H_);
             if (!nearest) return;
-            const double e = grown(samples_[nearest->index]), to = e + kPlaneTo * H_;
+            const double e = grown(samples_[nearest->index]), to = e + kPlaneTo * h_;
             const double away = outline_.interior().away(points[i], to);
-            wanted[i] = away > e + kPlaneFrom * H_ && away < to;
+            wanted[i] = away > e + kPlaneFrom * h_ && away < to;
         });
         for (std::size_t i = 0; i < points.size(); ++i)
             if (wanted[i]) add(points[i], -1, 0, kSoft);
@@ -128,7 +127,7 @@ class Holder {
 
     // The corners of all cells within reach of a sample, row by row.
     std::vector<Point> pointsNearSamples(double cell) const {
-        const auto reach = static_cast<std::int32_t>(std::ceil(kNearPlane * H_ / cell));
+        const auto reach = static_cast<std::int32_t>(std::ceil(kPlaneReach * H_ / cell));
         tsl::robin_map<std::int32_t, Spans> rows;
         for (const ThinSample& sample : samples_) {
             const GridCell at = GridCell::of(sample.at, cell);
@@ -155,29 +154,27 @@ class Holder {
     const Outline& outline_;
     std::vector<ThinSample> samples_;
     PointGrid near_;
-    double H_, half_;
-    Point spacing_;
+    double H_, h_, half_;
     Ascent ascent_;
 };
 
 }  // namespace
 
 int samplingOf(const std::vector<ThinSample>& samples, double H) {
-    for (const int sampling : {1, 2}) {
-        const double half = kHalfThickness * H / sampling;
-        const auto swollen =
-            std::count_if(samples.begin(), samples.end(),
-                          [&](const ThinSample& sample) { return 2 * half > 1.5 * sample.thickness; });
-        if (20 * swollen <= static_cast<std::ptrdiff_t>(samples.size())) return sampling;
-    }
-    return 4;
+    int sampling = 1;
+    const auto isThickened = [&](const ThinSample& sample) {
+        return 2 * kHalfThickness * H / sampling > sample.thickness;
+    };
+    for (; sampling < kFinest; sampling *= 2)
+        if (kOfSamples * std::count_if(samples.begin(), samples.end(), isThickened) <=
+            static_cast<std::ptrdiff_t>(samples.size()))
+            break;
+    return sampling;
 }
 
-std::int64_t holdThin(RowField<float>& field, const Outline& outline, const std::vector<ThinSample>& samples,
-                      double H, int sampling, Point spacing, const Progress& progress) {
+void holdThin(RowField<float>& field, const HoldTask& task, const Progress& progress) {
     assert(field.axis == 0);
-    if (samples.empty()) return 0;
-    return Holder(field, outline, thinnestOfEachCell(samples, kCell * H), H, sampling, spacing).run(progress);
+    if (!task.samples.empty()) Holder(field, task).run(progress);
 }
 
 }  // namespace isowave::curves2d

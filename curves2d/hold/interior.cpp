@@ -44,9 +44,8 @@ std::optional<std::int32_t> Interior::part(Point p) const {
     const double row = std::floor(p.y);
     const auto rowBegin = std::lower_bound(crossings_.begin(), crossings_.end(), row,
                                            [](const Crossing& c, double y) { return c.at.y < y; });
-    const auto behind =
-        std::partition_point(rowBegin, crossings_.end(),
-                             [&](const Crossing& c) { return c.at.y == row && c.at.x <= p.x; });
+    const auto behind = std::partition_point(
+        rowBegin, crossings_.end(), [&](const Crossing& c) { return c.at.y == row && c.at.x <= p.x; });
     bool in = (behind - rowBegin) % 2 == 1;
     std::int32_t ring = in ? std::prev(behind)->ring : -1;
     double highest = -INFINITY;

@@ -380,7 +380,7 @@ TEST_F(Drawing, GeojsonAndTextComeBackAsTheSameRings) {
 
 TEST_F(Drawing, WrittenRingsAreStillSimpleInTheInputsCoordinates) {
     const Input input = readInput(kData / "africa.geojson", {.pixels = 363});
-    traceSteps(fit(*input.shape, Fit::distance), 8,
+    traceSteps(fit(*input.shape, Fit::distance), 8, Hold::none,
                [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
                    if (curves.rings.empty()) return;
                    writeGeojson(folder_ / "a.geojson", curves, "Africa");
@@ -444,7 +444,7 @@ TEST(RealInputs, AfricaKeepsItsAreaAndItsRingsAreValidAtEveryStep) {
         EXPECT_THAT(input.remarks, IsEmpty());
         std::vector<StepFacts> facts;
         const Ladder ladder =
-            traceSteps(fit(*input.shape, method), std::nullopt,
+            traceSteps(fit(*input.shape, method), std::nullopt, Hold::local,
                        [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
                            EXPECT_EQ(validity::complaint(curves.rings), "") << f.step;
                            facts.push_back(f);
@@ -465,7 +465,7 @@ TEST(RealInputs, SilhouettesWithHolesAreValidAtEveryStep) {
         for (const Fit method : {Fit::binary, Fit::distance}) {
             const Input input = readInput(kData / name, {.invert = true});
             std::size_t holes = 0;
-            traceSteps(fit(*input.shape, method), std::nullopt,
+            traceSteps(fit(*input.shape, method), std::nullopt, Hold::local,
                        [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
                            EXPECT_EQ(validity::complaint(curves.rings), "") << name << f.step;
                            holes = std::max(holes, f.holes);
