@@ -25,12 +25,6 @@ constexpr double kSoft = 0.005, kHard = 0.002;
 constexpr int kMostRounds = 40;
 constexpr int kFinest = 4, kOfSamples = 50;
 
-std::vector<Point> placesOf(const std::vector<ThinSample>& samples) {
-    std::vector<Point> places;
-    for (const ThinSample& sample : samples) places.push_back(sample.at);
-    return places;
-}
-
 std::vector<ThinSample> thinnestOfEachCell(const std::vector<ThinSample>& samples, double cell) {
     std::vector<double> thickness;
     for (const ThinSample& sample : samples) thickness.push_back(sample.thickness);
@@ -170,6 +164,15 @@ int samplingOf(const std::vector<ThinSample>& samples, double H) {
             static_cast<std::ptrdiff_t>(samples.size()))
             break;
     return sampling;
+}
+
+void deepen(RowField<float>& field, const HoldTask& task, double depth, const Progress& progress) {
+    Ascent ascent(field);
+    const double unit = task.spacing * task.outline.slope();
+    for (const ThinSample& sample : task.samples)
+        ascent.add({(1 / task.spacing) * sample.at, 1, depth * unit, 0});
+    ascent.run(kTolerance * unit, kMostRounds, progress);
+    ascent.write(field);
 }
 
 void holdThin(RowField<float>& field, const HoldTask& task, const Progress& progress) {

@@ -41,4 +41,7 @@ struct HoldTask {
 // REQUIRES: field.axis == 0, its lattice has the origin of level 0 and the task's spacing.
 void holdThin(RowField<float>& field, const HoldTask& task, const Progress& progress = {});
 
+// Once more for samples that curves straight between the lattice's lines leave out: F(x) <= -depth h at each, 0 < depth.
+void deepen(RowField<float>& field, const HoldTask& task, double depth, const Progress& progress = {});
+
 }  // namespace isowave::curves2d

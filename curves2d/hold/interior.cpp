@@ -30,13 +30,20 @@ Interior::Interior(const Curves& curves)
         outer_.push_back(ring.hole ? ring.parent : static_cast<std::int32_t>(r));
         area_[static_cast<std::size_t>(outer_.back())] += signedArea(ring.points);
         ringOfSegment_.insert(ringOfSegment_.end(), ring.points.size(), static_cast<std::int32_t>(r));
-        for (const Point& p : ring.points)
-            if (p.y == std::floor(p.y)) crossings_.push_back({p, static_cast<std::int32_t>(r)});
     }
+    for (std::size_t i = 0; i < segments_.size(); ++i) addCrossings(i);
     for (const double area : area_) largest_ = std::max(largest_, area);
     std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
         return a.at.y != b.at.y ? a.at.y < b.at.y : a.at.x < b.at.x;
     });
+}
+
+// With rows low <= y < high, so that a point on a row counts for one of its two segments.
+void Interior::addCrossings(std::size_t segment) {
+    const auto [a, b] = segments_[segment];
+    const double high = std::max(a.y, b.y);
+    for (double y = std::ceil(std::min(a.y, b.y)); y < high; ++y)
+        crossings_.push_back({{a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y), y}, ringOfSegment_[segment]});
 }
 
 // From far left along the lattice row below the point, then upwards. The last curve that is crossed bounds the part.

@@ -36,6 +36,8 @@ class Interior {
         std::int32_t ring;
     };
 
+    void addCrossings(std::size_t segment);
+
     std::vector<Segment> segments_;
     std::vector<std::int32_t> ringOfSegment_;
     SegmentTree tree_;

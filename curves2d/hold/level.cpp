@@ -35,12 +35,47 @@ Change changeBetween(const RowField<float>& a, const RowField<float>& b, int sam
     return change;
 }
 
-double keptShare(const Curves& curves, double spacing, const std::vector<ThinSample>& samples) {
-    if (samples.empty()) return 1;
+// And the squares that a thin place reaches, one step beyond its ends.
+void addThinPlaces(tsl::robin_set<std::uint64_t>& squares, const std::vector<ThinSample>& samples, double H,
+                   double spacing) {
+    for (const ThinSample& sample : samples) {
+        const double reach = sample.thickness / 2 + spacing;
+        const GridCell low = GridCell::of(sample.at - Point{reach, reach}, H),
+                       high = GridCell::of(sample.at + Point{reach, reach}, H);
+        for (std::int32_t y = low.y; y <= high.y; ++y)
+            for (std::int32_t x = low.x; x <= high.x; ++x) squares.insert(GridCell{x, y}.key());
+    }
+}
+
+std::vector<ThinSample> outsideOf(const Curves& curves, double spacing,
+                                  const std::vector<ThinSample>& samples) {
+    if (samples.empty()) return {};
     const Interior interior(curves);
-    std::size_t kept = 0;
-    for (const ThinSample& sample : samples) kept += interior.inside((1 / spacing) * sample.at);
-    return static_cast<double>(kept) / static_cast<double>(samples.size());
+    std::vector<ThinSample> outside;
+    for (const ThinSample& sample : samples)
+        if (!interior.inside((1 / spacing) * sample.at)) outside.push_back(sample);
+    return outside;
+}
+
+// In lattice steps, one try after the other.
+constexpr double kDeeper[] = {0.25, 0.4};
+
+// Holds the samples, and then no more parts and holes than before. What is outside then, for the curves are straight between
+// the lattice's lines and cuts have been made, is held deeper.
+Mended heldAndMended(RowField<float>& field, const HoldTask& task, const MendTask& mending,
+                     const Progress& progress) {
+    holdThin(field, task, progress);
+    Mended mended = mend(field, mending, progress);
+    for (const double depth : kDeeper) {
+        const std::vector<ThinSample> outside = outsideOf(mended.curves, task.spacing, task.samples);
+        if (outside.empty()) break;
+        deepen(field, {task.outline, outside, task.H, task.spacing}, depth, progress);
+        Mended again = mend(field, mending, progress);
+        again.joined += mended.joined;
+        again.opened += mended.opened;
+        mended = std::move(again);
+    }
+    return mended;
 }
 
 }  // namespace
@@ -60,16 +95,19 @@ HeldLevel LevelHolder::hold(const RowField<float>& plain, const Progress& progre
     for (int k = 1; k < level.facts.sampling; k *= 2) level.field = onHalfSpacing(level.field);
     const RowField<float> unchanged = level.field;
     const double spacing = H / level.facts.sampling;
-    holdThin(level.field, {outline_, samples, H, spacing}, progress);
     Mended mended =
-        mend(level.field, {before_, beforeSpacing_, samples, H, spacing, outline_.slope()}, progress);
-    const Change change = changeBetween(unchanged, level.field, level.facts.sampling);
+        heldAndMended(level.field, {outline_, samples, H, spacing},
+                      {before_, beforeSpacing_, samples, H, spacing, outline_.slope()}, progress);
+    Change change = changeBetween(unchanged, level.field, level.facts.sampling);
+    addThinPlaces(change.squares, samples, H, spacing);
     level.traced = std::move(mended.curves);
     level.curves = coarsened(level.traced, level.facts.sampling, [&](std::int32_t i, std::int32_t j) {
         return change.squares.count(GridCell{i, j}.key()) > 0;
     });
     level.facts.samples = static_cast<std::int64_t>(samples.size());
-    level.facts.kept = keptShare(level.curves, spacing, samples);
+    if (!samples.empty())
+        level.facts.kept = 1 - static_cast<double>(outsideOf(level.curves, spacing, samples).size()) /
+                                   static_cast<double>(samples.size());
     level.facts.changed = change.count;
     level.facts.islands = mended.islands;
     level.facts.joined = mended.joined;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kMostRounds = 6;       // then what is in excess goes
 constexpr double kSampleWeight = 4;  // of a part with thin samples
+constexpr double kClear = 0.5;      // lattice steps between a cut and a sample
 constexpr double kDepth = 0.1;       // of a lattice step: how far beyond zero a changed lattice point lies
 constexpr int kBeside = 4;           // lattice points around a change that keep their signs
 constexpr double kTolerance = 1e-3;  // of a lattice step
@@ -28,8 +29,10 @@ using Cell = std::pair<std::int32_t, std::int32_t>;  // j, i: row by row
 // The cheapest way from one region to another of its kind.
 class PathFinder {
   public:
-    PathFinder(const Regions& now, const Regions& before, const std::set<std::int32_t>& excess)
-        : now_(now), before_(before), excess_(excess) {}
+    // samples: a cut keeps away from them.
+    PathFinder(const Regions& now, const Regions& before, const std::set<std::int32_t>& excess,
+               const PointGrid& samples, double spacing)
+        : now_(now), before_(before), excess_(excess), samples_(samples), spacing_(spacing) {}
 
     // Lattice points to change, fewer than `most`; nothing where there is no such way. Breadth first, steps that change
     // nothing before those that do.
@@ -51,7 +54,7 @@ class PathFinder {
             for (const auto& [dj, di] : {Cell{0, -1}, Cell{0, 1}, Cell{-1, 0}, Cell{1, 0}}) {
                 const Cell next{at.first + dj, at.second + di};
                 const bool free = kindAt(now_, next) == inside;
-                if (!free && (kindAt(before_, next) != inside || cost + 1 >= most)) continue;
+                if (!free && (cost + 1 >= most || !mayChange(next, inside))) continue;
                 const int reached = cost + !free;
                 const auto [old, isNew] = visits_.insert({key(next), Visit{reached, at, false}});
                 if (!isNew && (old->second.done || old->second.cost <= reached)) continue;
@@ -72,6 +75,10 @@ class PathFinder {
     static bool kindAt(const Regions& regions, Cell cell) {
         return regions.inside(regions.at(cell.second, cell.first));
     }
+    bool mayChange(Cell cell, bool toInside) const {
+        if (kindAt(before_, cell) != toInside) return false;
+        return toInside || !samples_.nearest({spacing_ * cell.second, spacing_ * cell.first}, kClear * spacing_);
+    }
     bool isGoal(Cell cell, std::int32_t region, bool inside) const {
         const std::int32_t here = now_.at(cell.second, cell.first);
         return here != region && now_.inside(here) == inside && !excess_.count(here);
@@ -90,6 +97,8 @@ class PathFinder {
 
     const Regions &now_, &before_;
     const std::set<std::int32_t>& excess_;
+    const PointGrid& samples_;
+    double spacing_;
     tsl::robin_map<std::uint64_t, Visit> visits_;
 };
 
@@ -117,7 +126,8 @@ void changeSigns(RowField<float>& field, const std::set<Cell>& changed, double s
 class Mender {
   public:
     Mender(RowField<float>& field, const MendTask& task)
-        : field_(field), task_(task), before_(task.before, task.beforeSpacing, task.spacing) {}
+        : field_(field), task_(task), before_(task.before, task.beforeSpacing, task.spacing),
+          samples_(placesOf(task.samples), task.spacing) {}
 
     Mended run(const Progress& progress) {
         for (int round = 0;; ++round) {
@@ -166,7 +176,7 @@ class Mender {
     // The lattice points to change so that pieces in excess join the rest.
     std::set<Cell> ways() {
         std::set<Cell> changed;
-        PathFinder finder(*now_, before_, excess_);
+        PathFinder finder(*now_, before_, excess_, samples_, task_.spacing);
         for (const std::int32_t region : excess_) {
             const bool holds = holds_[static_cast<std::size_t>(region)];
             const auto way = finder.find(region, now_->area(region) / pixel() * (holds ? kSampleWeight : 1));
@@ -188,6 +198,7 @@ class Mender {
     RowField<float>& field_;
     const MendTask& task_;
     Regions before_;
+    PointGrid samples_;
     std::optional<Regions> now_;
     std::set<std::int32_t> excess_;
     std::vector<char> holds_;

@@ -35,4 +35,11 @@ std::vector<ThinSample> samplesOfLevel(const std::vector<ThinSample>& all, const
     return chosen;
 }
 
+std::vector<Point> placesOf(const std::vector<ThinSample>& samples) {
+    std::vector<Point> places;
+    places.reserve(samples.size());
+    for (const ThinSample& sample : samples) places.push_back(sample.at);
+    return places;
+}
+
 }  // namespace isowave::curves2d

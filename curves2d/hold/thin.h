@@ -22,4 +22,6 @@ std::vector<ThinSample> thinSamples(const Outline& outline);
 // the largest part.
 std::vector<ThinSample> samplesOfLevel(const std::vector<ThinSample>& all, const Outline& outline, double H);
 
+std::vector<Point> placesOf(const std::vector<ThinSample>& samples);
+
 }  // namespace isowave::curves2d
