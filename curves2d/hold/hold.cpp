@@ -41,7 +41,7 @@ class Holder {
         : field_(field),
           outline_(task.outline),
           samples_(thinnestOfEachCell(task.samples, kCell * task.spacing)),
-          near_(placesOf(samples_), kPlaneReach * task.H),
+          near_(placesOf(samples_), task.spacing),
           H_(task.H),
           h_(task.spacing),
           half_(kHalfThickness * h_),

@@ -95,9 +95,8 @@ HeldLevel LevelHolder::hold(const RowField<float>& plain, const Progress& progre
     for (int k = 1; k < level.facts.sampling; k *= 2) level.field = onHalfSpacing(level.field);
     const RowField<float> unchanged = level.field;
     const double spacing = H / level.facts.sampling;
-    Mended mended =
-        heldAndMended(level.field, {outline_, samples, H, spacing},
-                      {before_, beforeSpacing_, samples, H, spacing, outline_.slope()}, progress);
+    Mended mended = heldAndMended(level.field, {outline_, samples, H, spacing},
+                                  {before_, beforeSpacing_, samples, H, spacing, outline_.slope()}, progress);
     Change change = changeBetween(unchanged, level.field, level.facts.sampling);
     addThinPlaces(change.squares, samples, H, spacing);
     level.traced = std::move(mended.curves);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostRounds = 6;       // then what is in excess goes
 constexpr double kSampleWeight = 4;  // of a part with thin samples
-constexpr double kClear = 0.5;      // lattice steps between a cut and a sample
+constexpr double kClear = 0.5;       // lattice steps between a cut and a sample
 constexpr double kDepth = 0.1;       // of a lattice step: how far beyond zero a changed lattice point lies
 constexpr int kBeside = 4;           // lattice points around a change that keep their signs
 constexpr double kTolerance = 1e-3;  // of a lattice step
@@ -77,7 +77,8 @@ class PathFinder {
     }
     bool mayChange(Cell cell, bool toInside) const {
         if (kindAt(before_, cell) != toInside) return false;
-        return toInside || !samples_.nearest({spacing_ * cell.second, spacing_ * cell.first}, kClear * spacing_);
+        return toInside ||
+               !samples_.nearest({spacing_ * cell.second, spacing_ * cell.first}, kClear * spacing_);
     }
     bool isGoal(Cell cell, std::int32_t region, bool inside) const {
         const std::int32_t here = now_.at(cell.second, cell.first);
@@ -126,7 +127,9 @@ void changeSigns(RowField<float>& field, const std::set<Cell>& changed, double s
 class Mender {
   public:
     Mender(RowField<float>& field, const MendTask& task)
-        : field_(field), task_(task), before_(task.before, task.beforeSpacing, task.spacing),
+        : field_(field),
+          task_(task),
+          before_(task.before, task.beforeSpacing, task.spacing),
           samples_(placesOf(task.samples), task.spacing) {}
 
     Mended run(const Progress& progress) {

@@ -39,29 +39,38 @@ class PointGrid {
         std::uint32_t index;
         double distance;
     };
-    // Of equally near ones the first. REQUIRES: radius <= cell.
+    // Of equally near ones the first. Squares of cells around the point's own are searched from the inside outwards.
     std::optional<Found> nearest(Point p, double radius) const {
         std::optional<Found> best;
-        eachIn({p - Point{radius, radius}, p + Point{radius, radius}}, [&](std::uint32_t i) {
-            const double d = length(points_[i] - p);
-            if (d > radius) return;
-            if (!best || d < best->distance || (d == best->distance && i < best->index)) best = Found{i, d};
-        });
+        const GridCell centre = GridCell::of(p, cell_);
+        const auto last = static_cast<std::int32_t>(std::ceil(radius / cell_));
+        for (std::int32_t k = 0; k <= last; ++k) {
+            if (best && best->distance < (k - 1) * cell_) break;
+            eachCellOfSquare(centre, k, [&](std::uint32_t i) {
+                const double d = length(points_[i] - p);
+                if (d > radius) return;
+                if (!best || d < best->distance || (d == best->distance && i < best->index))
+                    best = Found{i, d};
+            });
+        }
         return best;
-    }
-    // Calls f(index) for every point of the cells that the box meets.
-    template <class F>
-    void eachIn(const Box& box, const F& f) const {
-        const GridCell low = GridCell::of(box.low, cell_), high = GridCell::of(box.high, cell_);
-        for (std::int32_t y = low.y; y <= high.y; ++y)
-            for (std::int32_t x = low.x; x <= high.x; ++x) {
-                const auto cell = cells_.find(GridCell{x, y}.key());
-                if (cell == cells_.end()) continue;
-                for (const std::uint32_t i : cell->second) f(i);
-            }
     }
 
   private:
+    template <class F>
+    void eachOf(GridCell at, const F& f) const {
+        const auto cell = cells_.find(at.key());
+        if (cell == cells_.end()) return;
+        for (const std::uint32_t i : cell->second) f(i);
+    }
+    // The cells k columns or rows away from the centre.
+    template <class F>
+    void eachCellOfSquare(GridCell centre, std::int32_t k, const F& f) const {
+        for (std::int32_t y = -k; y <= k; ++y)
+            for (std::int32_t x = -k; x <= k; x += y == -k || y == k ? 1 : std::max(1, 2 * k))
+                eachOf({centre.x + x, centre.y + y}, f);
+    }
+
     std::vector<Point> points_;
     double cell_;
     tsl::robin_map<std::uint64_t, std::vector<std::uint32_t>> cells_;

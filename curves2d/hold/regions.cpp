@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace isowave::curves2d {
@@ -38,6 +39,15 @@ Regions::Regions(const Curves& curves, double pixel, double spacing) : spacing_(
             open.push_back(crossings_[i].ring);
         crossings_[i].after = open.empty() ? kWorld : open.back();
     }
+    begin_.assign(inside_.size() + 1, 0);
+    for (const Crossing& c : crossings_)
+        if (c.after != kWorld) ++begin_[static_cast<std::size_t>(c.after) + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    stretches_.resize(begin_.back());
+    std::vector<std::uint32_t> next = begin_;
+    for (std::uint32_t i = 0; i < crossings_.size(); ++i)
+        if (crossings_[i].after != kWorld)
+            stretches_[next[static_cast<std::size_t>(crossings_[i].after)]++] = i;
 }
 
 std::int32_t Regions::at(std::int32_t i, std::int32_t j) const {
@@ -51,9 +61,9 @@ std::int32_t Regions::at(std::int32_t i, std::int32_t j) const {
 
 std::vector<Regions::Cell> Regions::points(std::int32_t region) const {
     std::vector<Cell> points;
-    for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {
-        const Crossing &from = crossings_[k], &to = crossings_[k + 1];
-        if (from.after != region || from.row != to.row) continue;
+    const auto r = static_cast<std::size_t>(region);
+    for (std::uint32_t k = begin_[r]; k < begin_[r + 1]; ++k) {
+        const Crossing &from = crossings_[stretches_[k]], &to = crossings_[stretches_[k] + 1];
         for (auto i = static_cast<std::int32_t>(std::ceil(from.x / spacing_)); spacing_ * i < to.x; ++i)
             points.push_back({i, from.row});
     }

@@ -44,7 +44,9 @@ class Regions {
     double spacing_;
     std::vector<char> inside_;
     std::vector<double> area_;
-    std::vector<Crossing> crossings_;  // by row, then x
+    std::vector<Crossing> crossings_;       // by row, then x
+    std::vector<std::uint32_t> begin_;      // of each region in stretches_
+    std::vector<std::uint32_t> stretches_;  // crossings behind which a region lies, region by region
 };
 
 // How regions of one set of curves lie over those of another, of the same kind (inside or not).
