@@ -381,7 +381,7 @@ int main(int argc, char** argv) {
     constexpr int kLastLevel = 6;
     std::vector<Ring> before;
     traceSteps(fit(*ready.shape, Fit::distance), 2 * kLastLevel, Hold::none,
-               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves, const Curves&) {
                    if (facts.step % 2 || curves.rings.empty()) return;
                    const std::string level = std::to_string(facts.step / 2);
                    std::vector<Ring> own;

@@ -22,7 +22,7 @@ constexpr double kTolerance = 0.005;
 constexpr double kClear = 0.8;  // of an outer point's distance
 constexpr double kCurveReach = 1.25, kPlaneReach = 1.5;
 constexpr double kSoft = 0.005, kHard = 0.002;
-constexpr int kMostRounds = 40;
+constexpr int kSoftRounds = 8, kMostRounds = 40;
 constexpr int kFinest = 4, kOfSamples = 50;
 
 std::vector<ThinSample> thinnestOfEachCell(const std::vector<ThinSample>& samples, double cell) {
@@ -52,7 +52,7 @@ class Holder {
         addAlongCurve();
         addInPlane();
         const double tolerance = kTolerance * h_ * outline_.slope();
-        ascent_.run(tolerance, kMostRounds, progress);
+        ascent_.run(tolerance, kSoftRounds, progress);
         ascent_.clear();
         addHard(0);
         ascent_.run(tolerance, kMostRounds, progress);
