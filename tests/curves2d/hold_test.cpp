@@ -126,9 +126,9 @@ TEST(Hold, CorrectionsOfBarsVanishAsTheyGetThicker) {
                                                                       {3. / 8, 0.02, 0.40},
                                                                       {1. / 2, 0.06, 0.54},
                                                                       {3. / 4, 0.02, 0.78},
-                                                                      {1., 0.02, 1.03},
-                                                                      {3. / 2, 0.05, 1.53},
-                                                                      {2., 0.04, 2.03}}) {
+                                                                      {1., 0.02, 1.05},
+                                                                      {3. / 2, 0.05, 1.55},
+                                                                      {2., 0.04, 2.05}}) {
         const auto held = levelsOf(bar(thickness * H), Hold::local, 5),
                    plain = levelsOf(bar(thickness * H), Hold::none, 5);
         const LevelCurves& level = held.back();
