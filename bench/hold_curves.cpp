@@ -8,8 +8,11 @@
 //     build/release/bin/hold_curves ../shared/data/bitmap/{fern_mo_01,keyring_as_,contour_giraffe,africa_01}.png
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "curves2d/fit.h"
 #include "curves2d/hold/thin.h"

@@ -10,7 +10,8 @@
 // The input becomes a lattice of pixels, the lattice a uniform bicubic B-spline, and the curves are where the spline is
 // zero. Each *step* of the wavelet transform halves the resolution along one axis, x first; a *level* is two steps, so
 // level l has pixels of 2^l times the size. A coarser level has less detail and, because it is the function that is
-// made coarser, other topology too: islands vanish, holes close, narrow straits fill.
+// made coarser, other topology too: islands vanish, holes close, narrow straits fill. What is thin
+// stays whole, unless LadderOptions say otherwise.
 //
 // Coordinates are the input's: x and y of the polygons, or pixels of the image with (0, 0) in the middle of the first
 // one and y pointing down. Lengths are in the input's unit too, but for tolerances, which are in pixels of level 0.
