@@ -380,8 +380,8 @@ int main(int argc, char** argv) {
     judge.row("", "the input", rings);
     constexpr int kLastLevel = 6;
     std::vector<Ring> before;
-    traceSteps(fit(*ready.shape, Fit::distance), 2 * kLastLevel,
-               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+    traceSteps(fit(*ready.shape, Fit::distance), 2 * kLastLevel, Hold::none,
+               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves, const Curves&) {
                    if (facts.step % 2 || curves.rings.empty()) return;
                    const std::string level = std::to_string(facts.step / 2);
                    std::vector<Ring> own;

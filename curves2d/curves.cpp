@@ -97,14 +97,14 @@ Input readInput(const std::filesystem::path& path, const InputOptions& options, 
 
 DrawnCurves LadderStep::drawn(const DrawOptions& options) const {
     if (options.smooth)
-        return {curves_, smoothed(field_, curves_, options.tolerance.value_or(kSmoothTolerance) * pixel_)};
-    if (options.tolerance) return {refined(field_, curves_, *options.tolerance * pixel_), std::nullopt};
+        return {traced_, smoothed(field_, traced_, options.tolerance.value_or(kSmoothTolerance) * pixel_)};
+    if (options.tolerance) return {refined(field_, traced_, *options.tolerance * pixel_), std::nullopt};
     return {curves_, std::nullopt};
 }
 
 Panel LadderStep::panel(const View& view) const {
     const Point size = view.extent.high - view.extent.low;
-    return {name(), refined(field_, curves_, kSheetTolerance * std::max(size.x, size.y))};
+    return {name(), refined(field_, traced_, kSheetTolerance * std::max(size.x, size.y))};
 }
 
 Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor& visit,
@@ -118,10 +118,12 @@ Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor
     RowField<float> field = fit(*input.shape, method, distance, &report, progress);
     input.shape.reset();  // as large as the field
 
-    const auto onStep = [&](const StepFacts& facts, const RowField<float>& f, const Curves& curves) {
-        if (visit && facts.step >= options.firstStep) visit(LadderStep(facts, curves, f, input.pixel));
+    const auto onStep = [&](const StepFacts& facts, const RowField<float>& f, const Curves& curves,
+                            const Curves& traced) {
+        if (visit && facts.step >= options.firstStep)
+            visit(LadderStep(facts, curves, traced, f, input.pixel));
     };
-    Ladder ladder = traceSteps(std::move(field), options.lastStep, onStep, progress);
+    Ladder ladder = traceSteps(std::move(field), options.lastStep, options.hold, onStep, progress);
     ladder.fit = method;
     ladder.halfWidth = distance.halfWidth;
     ladder.band = distance.band;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curves2d/hold/level.h"
+
 namespace isowave::curves2d {
 namespace {
 
@@ -59,24 +61,36 @@ Distance distanceTo(const SegmentTree& target, const Curves& curves, double spac
     return result;
 }
 
-Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, const FieldVisitor& visit,
+Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, Hold hold, const FieldVisitor& visit,
                   const Progress& progress) {
     Ladder ladder;
     std::optional<SegmentTree> finest;
+    std::optional<LevelHolder> holder;
     double spacing = 0;
-    const auto onStep = [&](int step, const RowField<float>& f) {
-        const Curves curves = extractCurves(f, progress);
-        StepFacts facts = factsOf(step, f, curves);
-        if (step == 0) {
-            spacing = std::min(f.frame.spacing.x, f.frame.spacing.y);
-            finest.emplace(segmentsOf(curves));
-        } else {
+    const auto tell = [&](StepFacts facts, const RowField<float>& f, const Curves& curves,
+                          const Curves& traced) {
+        if (facts.step > 0) {
             const Distance d = distanceTo(*finest, curves, spacing);
             facts.maxToLevel0 = d.max;
             facts.rmsToLevel0 = d.rms;
         }
         ladder.steps.push_back(facts);
-        if (visit) visit(facts, f, curves);
+        if (visit) visit(facts, f, curves, traced);
+    };
+    const auto onStep = [&](int step, const RowField<float>& f) {
+        if (holder && step % 2 == 0) {
+            const HeldLevel level = holder->hold(f, progress);
+            StepFacts facts = factsOf(step, f, level.curves);
+            facts.hold = level.facts;
+            return tell(facts, level.field, level.curves, level.traced);
+        }
+        const Curves curves = extractCurves(f, progress);
+        if (step == 0) {
+            spacing = std::min(f.frame.spacing.x, f.frame.spacing.y);
+            finest.emplace(segmentsOf(curves));
+            if (hold == Hold::local) holder.emplace(f, curves);
+        }
+        tell(factsOf(step, f, curves), f, curves, curves);
     };
     const Pyramid<float> pyramid =
         analyse<float>(std::move(field), lastStep.value_or(1000), progress, onStep);

@@ -18,13 +18,13 @@ namespace isowave::curves2d {
 RowField<float> fit(const Shape& shape, Fit method, const DistanceFitOptions& options = {},
                     FitReport* report = nullptr, const Progress& progress = {});
 
-// Called with every step's curves, finest first.
-using FieldVisitor =
-    std::function<void(const StepFacts& facts, const RowField<float>& field, const Curves& curves)>;
+// Called with every step's curves, finest first. traced: the same curves, a point wherever they cross the field's lattice.
+using FieldVisitor = std::function<void(const StepFacts& facts, const RowField<float>& field,
+                                        const Curves& curves, const Curves& traced)>;
 
 // Steps 0 .. lastStep (all that there are without it). Fills in the ladder's steps and counts; what it says about the
-// fit stays as it is.
-Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, const FieldVisitor& visit,
+// fit stays as it is. hold: changes levels from 1 on as they are visited; steps between levels and the pyramid stay.
+Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, Hold hold, const FieldVisitor& visit,
                   const Progress& progress = {});
 
 // One-sided distance from curves to segments, sampled at least every `spacing` along every piece, at most 64

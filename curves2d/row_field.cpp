@@ -136,6 +136,57 @@ RowField<Real> transposed(const RowField<Real>& field) {
     return out;
 }
 
+namespace {
+
+// Runs of coarse control points first .. last -> the fine ones 2 first - 2 .. 2 last + 2 that they have a weight in.
+std::vector<KnownRun> runsOnHalfSpacing(const std::vector<KnownRun>& coarse) {
+    std::vector<KnownRun> fine;
+    for (const auto& [first, last, insideAfter] : coarse) {
+        if (!fine.empty() && 2 * first - 2 <= fine.back().last + 1) {
+            fine.back().last = 2 * last + 2;
+            fine.back().insideAfter = insideAfter;
+        } else {
+            fine.push_back({2 * first - 2, 2 * last + 2, insideAfter});
+        }
+    }
+    return fine;
+}
+
+template <class Real>
+RowField<Real> halvedAlongRows(const RowField<Real>& field) {
+    RowField<Real> out;
+    out.axis = field.axis;
+    out.K = field.K;
+    out.frame = field.frame;
+    (field.axis == 0 ? out.frame.spacing.x : out.frame.spacing.y) /= 2;
+    std::vector<double> c;
+    for (const auto& [number, row] : field.rows) {
+        Row<Real> fine;
+        fine.runs = runsOnHalfSpacing(row.runs);
+        RowReader<Real> reader(&row, field.K);
+        for (const KnownRun& run : fine.runs) {  // both ends are even
+            const std::int32_t first = run.first / 2, last = run.last / 2;
+            c.resize(static_cast<std::size_t>(last - first + 3));
+            reader.read(first - 1, c);
+            for (std::size_t i = 1; i + 1 < c.size(); ++i) {
+                fine.values.push_back(static_cast<Real>((c[i - 1] + 6 * c[i] + c[i + 1]) / 8));
+                if (i + 2 < c.size()) fine.values.push_back(static_cast<Real>((c[i] + c[i + 1]) / 2));
+            }
+        }
+        out.rows[number] = std::move(fine);
+    }
+    return out;
+}
+
+}  // namespace
+
+template <class Real>
+RowField<Real> onHalfSpacing(const RowField<Real>& field) {
+    const RowField<Real> half = transposed(halvedAlongRows(field));
+    RowField<Real> out = halvedAlongRows(half);
+    return out.axis == 0 ? out : transposed(out);
+}
+
 template <class Real>
 std::int64_t definedNodeCount(const RowField<Real>& field) {
     std::int64_t count = 0;
@@ -191,6 +242,7 @@ Sample sample(const RowField<Real>& field, Point lattice) {
     template struct RowField<Real>;                                \
     template class RowReader<Real>;                                \
     template RowField<Real> transposed(const RowField<Real>&);     \
+    template RowField<Real> onHalfSpacing(const RowField<Real>&);  \
     template std::int64_t definedNodeCount(const RowField<Real>&); \
     template Sample sample(const RowField<Real>&, Point);
 ISOWAVE_INSTANTIATE(float)

@@ -92,6 +92,11 @@ class RowReader {
 template <class Real>
 RowField<Real> transposed(const RowField<Real>& field);
 
+// The same spline on a lattice of half the spacing, by knot insertion: its control points are (c_{i-1} + 6 c_i + c_{i+1})/8
+// and (c_i + c_{i+1})/2 on each axis, known where one of these is. Any axis will do; the rows of the result run along x.
+template <class Real>
+RowField<Real> onHalfSpacing(const RowField<Real>& field);
+
 // The same control points in another type.
 template <class To, class From>
 RowField<To> converted(const RowField<From>& field) {

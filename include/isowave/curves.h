@@ -10,7 +10,8 @@
 // The input becomes a lattice of pixels, the lattice a uniform bicubic B-spline, and the curves are where the spline is
 // zero. Each *step* of the wavelet transform halves the resolution along one axis, x first; a *level* is two steps, so
 // level l has pixels of 2^l times the size. A coarser level has less detail and, because it is the function that is
-// made coarser, other topology too: islands vanish, holes close, narrow straits fill.
+// made coarser, other topology too: islands vanish, holes close, narrow straits fill. What is thin
+// stays whole, unless LadderOptions say otherwise.
 //
 // Coordinates are the input's: x and y of the polygons, or pixels of the image with (0, 0) in the middle of the first
 // one and y pointing down. Lengths are in the input's unit too, but for tolerances, which are in pixels of level 0.
@@ -144,6 +145,11 @@ struct Panel {
 
 enum class Fit { binary, distance };
 
+// What happens to parts of a shape that are thinner than a level's pixels. local: they stay whole, by a change of the level
+// beside them, and no level has more parts or holes than the one before. none: they tear and vanish; the levels are the
+// wavelet transform's own, as the paper has them.
+enum class Hold { none, local };
+
 struct InputOptions {
     std::optional<double> iso = std::nullopt;  // pictures; without it the middle of the range of values
     bool invert = false;                       // pictures: inside is where the value does not exceed iso
@@ -194,9 +200,26 @@ struct LadderOptions {
     // Of the distance fit, in pixels: distances are clamped to ±halfWidth, and nodes nearer than `band` are kept.
     double halfWidth = 4;
     std::optional<double> band = {};  // without it 2, or halfWidth where that is less
-    int firstStep = 0;                // finer ones are computed but not visited
+    Hold hold = Hold::local;
+    int firstStep = 0;  // finer ones are computed but not visited
     // Without it as far as the transform goes: to one node, 4 x 4 control points.
     std::optional<int> lastStep = {};
+};
+
+// What was done to a level so that thin parts stay whole and topology only falls. Areas in the input's unit squared.
+struct HoldFacts {
+    // Where level 0 is at most 1.5 pixels of the level thick (places on its lattice lines, in parts larger than a pixel of
+    // the level), and the share of these places inside the level's curves.
+    std::int64_t samples = 0;
+    double kept = 1;
+    // Steps of the lattice in a pixel of the level (1, 2, 4): the curves are sampled on it where they are held.
+    int sampling = 1;
+    std::int64_t changed = 0;  // control points of that lattice that differ from the plain level's
+    std::size_t islands = 0;   // parts left out that are smaller than a pixel of the level and not held
+    // Where the level would have more parts or holes than the level before: parts joined, holes opened; parts dropped, holes
+    // filled, as wholes. And the area that these four change.
+    std::size_t joined = 0, opened = 0, dropped = 0, filled = 0;
+    double area = 0;
 };
 
 struct StepFacts {
@@ -210,6 +233,7 @@ struct StepFacts {
     double area = 0;         // the input's unit squared
     double maxToLevel0 = 0;  // from points on this step's curves to the curves of step 0; the input's unit
     double rmsToLevel0 = 0;  // weighted by length. Both one-sided: an island that has gone costs nothing
+    std::optional<HoldFacts> hold;  // of levels from 1 on, unless Hold::none
 };
 
 // "L0", "L0a", "L1", ...: step s is level s/2 when s is even; the step between level l and the next one is "la". (Esteve,
@@ -235,8 +259,10 @@ struct RowField;
 // A step as it passes by. REQUIRES: used within the visit only.
 class LadderStep {
   public:
-    LadderStep(const StepFacts& facts, const Curves& curves, const RowField<float>& field, double pixel)
-        : facts_(facts), curves_(curves), field_(field), pixel_(pixel) {}
+    // traced: the same curves as `curves`, with a point wherever they cross the field's lattice.
+    LadderStep(const StepFacts& facts, const Curves& curves, const Curves& traced,
+               const RowField<float>& field, double pixel)
+        : facts_(facts), curves_(curves), traced_(traced), field_(field), pixel_(pixel) {}
 
     const StepFacts& facts() const { return facts_; }
     std::string name() const { return stepName(facts_.step); }
@@ -244,7 +270,7 @@ class LadderStep {
     std::optional<int> level() const {
         return facts_.step % 2 == 0 ? std::optional<int>(facts_.step / 2) : std::nullopt;
     }
-    // As traced: a point wherever a curve crosses the lattice.
+    // A point wherever a curve crosses the level's lattice; where thin parts are held, a finer one.
     const Curves& curves() const { return curves_; }
     ISOWAVE_EXPORT DrawnCurves drawn(const DrawOptions& options = {}) const;
     // For a sheet (below): as exact as its small pictures show, labelled with the step's name.
@@ -252,7 +278,7 @@ class LadderStep {
 
   private:
     const StepFacts& facts_;
-    const Curves& curves_;
+    const Curves &curves_, &traced_;
     const RowField<float>& field_;
     double pixel_;
 };

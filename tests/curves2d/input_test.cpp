@@ -380,8 +380,8 @@ TEST_F(Drawing, GeojsonAndTextComeBackAsTheSameRings) {
 
 TEST_F(Drawing, WrittenRingsAreStillSimpleInTheInputsCoordinates) {
     const Input input = readInput(kData / "africa.geojson", {.pixels = 363});
-    traceSteps(fit(*input.shape, Fit::distance), 8,
-               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves) {
+    traceSteps(fit(*input.shape, Fit::distance), 8, Hold::none,
+               [&](const StepFacts& facts, const RowField<float>&, const Curves& curves, const Curves&) {
                    if (curves.rings.empty()) return;
                    writeGeojson(folder_ / "a.geojson", curves, "Africa");
                    EXPECT_THAT(readPolygons(folder_ / "a.geojson").remarks, IsEmpty()) << facts.step;
@@ -444,8 +444,8 @@ TEST(RealInputs, AfricaKeepsItsAreaAndItsRingsAreValidAtEveryStep) {
         EXPECT_THAT(input.remarks, IsEmpty());
         std::vector<StepFacts> facts;
         const Ladder ladder =
-            traceSteps(fit(*input.shape, method), std::nullopt,
-                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
+            traceSteps(fit(*input.shape, method), std::nullopt, Hold::local,
+                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves, const Curves&) {
                            EXPECT_EQ(validity::complaint(curves.rings), "") << f.step;
                            facts.push_back(f);
                        });
@@ -465,8 +465,8 @@ TEST(RealInputs, SilhouettesWithHolesAreValidAtEveryStep) {
         for (const Fit method : {Fit::binary, Fit::distance}) {
             const Input input = readInput(kData / name, {.invert = true});
             std::size_t holes = 0;
-            traceSteps(fit(*input.shape, method), std::nullopt,
-                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves) {
+            traceSteps(fit(*input.shape, method), std::nullopt, Hold::local,
+                       [&](const StepFacts& f, const RowField<float>&, const Curves& curves, const Curves&) {
                            EXPECT_EQ(validity::complaint(curves.rings), "") << name << f.step;
                            holes = std::max(holes, f.holes);
                        });

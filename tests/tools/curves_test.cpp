@@ -70,6 +70,29 @@ TEST(CurvesCommand, EveryFormatAndSmoothCurves) {
     EXPECT_THAT(contentOf(folder / "out/map/map_L0.svg"), HasSubstr("C"));
 }
 
+TEST(CurvesCommand, HoldsThinPartsUnlessToldNotTo) {
+    const Folder folder;
+    for (const std::string hold : {"local", "none"}) {
+        const Result result =
+            isowave({"curves", kKeys, "-o", (folder / hold).string(), "--invert", "--hold", hold, "--table",
+                     "--levels", "0..3", "--json", (folder / (hold + ".json")).string()});
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_THAT(result.out, HasSubstr("kept %"));
+    }
+    const auto local = jsonFile(folder / "local.json"), none = jsonFile(folder / "none.json");
+    EXPECT_EQ(local["hold"], "local");
+    EXPECT_EQ(none["hold"], "none");
+    EXPECT_TRUE(none["steps"][6]["hold"].is_null());
+    EXPECT_TRUE(local["steps"][5]["hold"].is_null());
+    const auto& hold = local["steps"][6]["hold"];
+    EXPECT_GE(hold["kept"], 0.995);
+    EXPECT_GT(hold["samples"], 1000);
+    EXPECT_EQ(hold["sampling"], 4);
+    EXPECT_GT(hold["changed"], 1000);
+    EXPECT_LE(local["steps"][6]["rings"], local["steps"][0]["rings"]);
+    EXPECT_GT(none["steps"][6]["rings"], none["steps"][0]["rings"]);
+}
+
 struct Bad {
     std::string name, content;
     Arguments more;
@@ -99,6 +122,7 @@ TEST(CurvesCommand, BadInputGivesOneLineItsExitCodeAndNoFiles) {
         {"a.pgm", "P2 2 2 255 5 5 5 6", {"--pixels", "64"}, 2, "which is an image"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--smooth", "--format", "geojson"}, 2, "--smooth"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--format", "stl"}, 2, "--format"},
+        {"a.txt", "0 0\n1 0\n1 1\n", {"--hold", "shift"}, 2, "--hold"},
     };
     for (const Bad& bad : all) {
         const Folder folder;

@@ -129,6 +129,7 @@ class CurvesCommand : public Command {
     bool invert_ = false;
     std::optional<curves2d::Fit> fit_;
     std::optional<double> halfWidth_, band_;
+    curves2d::Hold hold_ = curves2d::Hold::local;
 };
 
 CurvesCommand::CurvesCommand()
@@ -143,6 +144,13 @@ CurvesCommand::CurvesCommand()
     declareOutput("the folder that gets one file a level");
     options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
                    [this](const std::string& v) { levels_ = range(v); });
+    options_.value("--hold", "local|none", "local",
+                   "local: what is thinner than a level's pixel stays whole, and no level has more parts or "
+                   "holes than the one before; none: the wavelet levels as they are",
+                   [this](const std::string& v) {
+                       hold_ = choice<curves2d::Hold>(
+                           v, {{"local", curves2d::Hold::local}, {"none", curves2d::Hold::none}});
+                   });
     declareDrawing();
     declareJson();
     declareInput();
@@ -220,6 +228,7 @@ curves2d::LadderOptions CurvesCommand::ladderOptions() const {
     options.fit = fit_;
     if (halfWidth_) options.halfWidth = *halfWidth_;
     options.band = band_;
+    options.hold = hold_;
     if (!levels_) return options;
     options.firstStep = levels_->first * kStepsPerPlaneLevel;
     if (levels_->last) options.lastStep = *levels_->last * kStepsPerPlaneLevel;
@@ -238,6 +247,7 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::stri
     report.path = arguments[0].string();
     report.kind = input.kind;
     report.pixel = input.pixel;
+    report.hold = hold_;
     LevelWriter writer(draw_, curves2d::viewOf(input), out);
     report.ladder = curves2d::makeLadder(
         std::move(input), ladderOptions(), [&](const curves2d::LadderStep& step) { writer.visit(step); },

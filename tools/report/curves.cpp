@@ -31,6 +31,13 @@ Json fitJson(const Ladder& ladder) {
     return json;
 }
 
+Json holdJson(const curves2d::HoldFacts& hold) {
+    return {{"samples", hold.samples}, {"kept", hold.kept},       {"sampling", hold.sampling},
+            {"changed", hold.changed}, {"islands", hold.islands}, {"joined", hold.joined},
+            {"opened", hold.opened},   {"dropped", hold.dropped}, {"filled", hold.filled},
+            {"area", hold.area}};
+}
+
 Json stepJson(const CurvesReport::Step& step) {
     const StepFacts& f = step.facts;
     Json json;
@@ -47,7 +54,16 @@ Json stepJson(const CurvesReport::Step& step) {
     const bool known = f.points > 0;
     json["max_to_level0"] = known ? finite(f.maxToLevel0) : Json(nullptr);
     json["rms_to_level0"] = known ? finite(f.rmsToLevel0) : Json(nullptr);
+    json["hold"] = f.hold ? holdJson(*f.hold) : Json(nullptr);
     return json;
+}
+
+// Thin samples, the share kept, changed control points; what opened or dropped, what joined or filled.
+std::vector<std::string> holdCells(const StepFacts& facts) {
+    if (!facts.hold) return {"", "", "", ""};
+    const curves2d::HoldFacts& h = *facts.hold;
+    return {isowave::grouped(h.samples), h.samples ? fmt::format("{:.1f}", 100 * h.kept) : "",
+            isowave::grouped(h.changed), fmt::format("{}, {}", h.opened + h.dropped, h.joined + h.filled)};
 }
 
 std::string grouped(std::size_t count) { return isowave::grouped(static_cast<std::int64_t>(count)); }
@@ -62,6 +78,7 @@ Json treeOf(const CurvesReport& report) {
                           {"straight_pieces", report.straightPieces}};
     json["steps"] = Json::array();
     for (const CurvesReport::Step& step : report.steps) json["steps"].push_back(stepJson(step));
+    json["hold"] = report.hold == curves2d::Hold::local ? "local" : "none";
     json["coefficients_stored"] = report.ladder.coefficients;
     json["control_points"] = report.ladder.controlPoints;
     json["peak_memory_bytes"] = report.peakMemoryBytes;
@@ -73,11 +90,20 @@ Json treeOf(const CurvesReport& report) {
 std::string jsonOf(const CurvesReport& report) { return dumped(treeOf(report), 2); }
 
 std::string table(const CurvesReport& report) {
-    Table table({"step", "domain", "|I|", "nodes", "rings", "holes", "points", "area"});
-    for (const auto& [f, file] : report.steps)
-        table.row({curves2d::stepName(f.step), fmt::format("{}x{}", f.domain[0], f.domain[1]),
-                   tools::grouped(f.controlPoints), tools::grouped(f.nodes), grouped(f.rings),
-                   grouped(f.holes), grouped(f.points), shortNumber(f.area)});
+    Table table({"step", "domain", "|I|", "nodes", "rings", "holes", "points", "area", "thin", "kept %",
+                 "changed", "cuts, fills"});
+    for (const auto& [f, file] : report.steps) {
+        std::vector<std::string> row{curves2d::stepName(f.step),
+                                     fmt::format("{}x{}", f.domain[0], f.domain[1]),
+                                     tools::grouped(f.controlPoints),
+                                     tools::grouped(f.nodes),
+                                     grouped(f.rings),
+                                     grouped(f.holes),
+                                     grouped(f.points),
+                                     shortNumber(f.area)};
+        for (std::string& cell : holdCells(f)) row.push_back(std::move(cell));
+        table.row(row);
+    }
     return table.text();
 }
 

@@ -14,6 +14,7 @@ namespace isowave::tools {
 struct CurvesReport {
     std::string path, kind;  // of the input
     double pixel = 1;        // of level 0, in the input's unit
+    curves2d::Hold hold = curves2d::Hold::local;
     curves2d::Ladder ladder;
     // The steps that were asked for, and the file that each went to; none for half levels and where no ring is left.
     struct Step {

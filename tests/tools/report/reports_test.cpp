@@ -75,7 +75,7 @@ CurvesReport ladderOfTwoSteps() {
 TEST(CurvesReport, JsonHasTheKeysOfTheDocumentation) {
     CurvesReport report = ladderOfTwoSteps();
     const Json j = Json::parse(jsonOf(report));
-    EXPECT_THAT(keysOf(j), ElementsAre("version", "input", "fit", "steps", "coefficients_stored",
+    EXPECT_THAT(keysOf(j), ElementsAre("version", "input", "fit", "steps", "hold", "coefficients_stored",
                                        "control_points", "peak_memory_bytes"));
     EXPECT_THAT(keysOf(j["fit"]),
                 UnorderedElementsAre("method", "half_width", "band", "lattice_points", "disagreeing",
