@@ -59,6 +59,7 @@ void checkFitOptions(const SolidOptions& options) {
 void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, double memoryLimit,
          const std::string& remedy, const Progress& progress, StageClock& clock) {
     FitReport report;
+    std::optional<WallSummary> walls;
     const auto allow = [&](double bytesEach, auto count) {
         refuseTooLarge(solid.name(), bytesEach * static_cast<double>(count), memoryLimit, remedy);
     };
@@ -79,9 +80,15 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
         }();
         allow(kBytesPerBandPoint, grid->activeVoxelCount());
         const StageClock::Scope scope(clock, "fit");
-        solid.field = fitDistance(*grid, fitting.distance, &report, progress);
+        DistanceFitOptions options = fitting.distance;
+        if (samples.walls)
+            options.adjust = [&](BSplineField& field, const openvdb::Coord& shift) {
+                walls = samples.walls(field, *grid, shift);
+            };
+        solid.field = fitDistance(*grid, options, &report, progress);
     }
     solid.fit = summaryOf(fitting, report);
+    solid.fit->walls = walls;
     if (report.disagreeing > 0)
         progress.say(fmt::format("the sign of {} of {} lattice points differs from the input's",
                                  grouped(report.disagreeing), grouped(report.latticePoints)));

@@ -31,6 +31,10 @@ const char* nameOf(FitMethod method);
 struct Samples {
     std::function<NodeCollection()> nodes;
     std::function<openvdb::FloatGrid::Ptr()> distance;
+    // Corrects a distance fit before its repair; lattice point i of the distances is i + shift of the field. None: as it is.
+    std::function<WallSummary(BSplineField& field, const openvdb::FloatGrid& distance,
+                              const openvdb::Coord& shift)>
+        walls = {};
 };
 
 // Fills solid.field and solid.fit. remedy: what makes the job smaller. Throws InputError where the rest of the job would

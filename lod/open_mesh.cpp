@@ -13,6 +13,7 @@
 #include "lod/memory.h"
 #include "volume/distance.h"
 #include "volume/mesh_repair.h"
+#include "volume/walls/wall_fit.h"
 
 namespace isowave::lod {
 namespace {
@@ -89,6 +90,18 @@ InputReport reportOf(const ClosedMesh& input, const std::string& name, double vo
     return report;
 }
 
+WallSummary wallsFitted(BSplineField& field, const openvdb::FloatGrid& distance, const openvdb::Coord& shift,
+                        const TriangleMesh& mesh, double halfWidth, const Progress& progress) {
+    std::vector<openvdb::Vec3d> points;
+    points.reserve(mesh.points.size());
+    for (const Point& p : mesh.points) points.push_back(distance.worldToIndex(openvdb::Vec3d(p.data())));
+    const WallFitReport report =
+        fitWalls(field, distance.constTree(), shift, points, mesh.triangles,
+                 {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth)}, progress);
+    return {report.rows,      report.sweeps,   report.unmet,      report.changed,
+            report.thickened, report.thinnest, report.leastRefine};
+}
+
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const TriangleMesh& mesh = input.loaded.mesh;
@@ -110,8 +123,13 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
     const auto distance = [&] {
         return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
     };
-    fit(solid, fitting, {[&] { return nodesOfDistance(*distance()); }, distance}, limit, kRemedy, progress,
-        clock);
+    Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
+    if (options.walls)
+        samples.walls = [&](BSplineField& field, const openvdb::FloatGrid& grid,
+                            const openvdb::Coord& shift) {
+            return wallsFitted(field, grid, shift, mesh, fitting.distance.halfWidth, progress);
+        };
+    fit(solid, fitting, samples, limit, kRemedy, progress, clock);
     solid.input.volume = volumeOf(input, *solid.field->shape, voxel);
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");

@@ -120,6 +120,30 @@ std::optional<Enum> choiceOf(const Json& object, const char* key, const std::arr
     return std::nullopt;
 }
 
+void putWalls(const WallSummary& walls, FieldList& list) {
+    list.put("walls_rows", walls.rows);
+    list.put("walls_sweeps", walls.sweeps);
+    list.put("walls_unmet", walls.unmet);
+    list.put("walls_changed", walls.changed);
+    list.put("walls_thickened", walls.thickened);
+    list.put("walls_thinnest", walls.thinnest);
+    list.put("walls_least_refine", walls.leastRefine);
+}
+
+std::optional<WallSummary> wallsOf(const Json& fit) {
+    const auto rows = valueOf<std::int64_t>(fit, "walls_rows");
+    if (!rows) return std::nullopt;
+    WallSummary walls;
+    walls.rows = *rows;
+    walls.sweeps = valueOf<int>(fit, "walls_sweeps").value_or(0);
+    walls.unmet = valueOf<std::int64_t>(fit, "walls_unmet").value_or(0);
+    walls.changed = valueOf<std::int64_t>(fit, "walls_changed").value_or(0);
+    walls.thickened = valueOf<std::int64_t>(fit, "walls_thickened").value_or(0);
+    walls.thinnest = valueOf<double>(fit, "walls_thinnest").value_or(0);
+    walls.leastRefine = valueOf<int>(fit, "walls_least_refine").value_or(1);
+    return walls;
+}
+
 }  // namespace
 
 const char* nameOf(InputReport::Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
@@ -153,6 +177,7 @@ Fields fieldsOf(const std::optional<FitSummary>& fit, const InputReport& input) 
     list.put("repaired", fit->repaired);
     list.put("repair_floor", fit->repairFloor);
     list.put("stopped", fit->repairAgreed ? "agreed" : "pass_limit");
+    if (fit->walls) putWalls(*fit->walls, list);
     return std::move(list).fields();
 }
 
@@ -205,6 +230,7 @@ std::optional<FitSummary> fitOfSource(const Source& source) {
     fit.repaired = valueOf<std::int64_t>(json, "repaired").value_or(0);
     fit.repairFloor = valueOf<double>(json, "repair_floor").value_or(0);
     fit.repairAgreed = valueOf<std::string>(json, "stopped").value_or("agreed") == "agreed";
+    fit.walls = wallsOf(json);
     return fit;
 }
 

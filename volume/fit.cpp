@@ -142,6 +142,7 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
             leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
     });
+    if (options.adjust) options.adjust(field, shift);
     finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, report, progress);
     return field;
 }

@@ -3,6 +3,9 @@
 // measured.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include "isowave/progress.h"
 #include "volume/field.h"
 #include "volume/fit/report.h"
@@ -24,6 +27,9 @@ struct DistanceFitOptions {
     double band = 2.0;       // b in voxels: nodes with a corner nearer than b are kept. 0 < b <= w
     double K = 1.0;
     int mostRepairPasses = kMostRepairPasses;
+    // Called before the repair, to change control points of I, and the shape's signs where they are meant to
+    // follow (fitWalls() of volume/walls/wall_fit.h). Lattice point i of the distances is i + shift of the field.
+    std::function<void(BSplineField& field, const openvdb::Coord& shift)> adjust = {};
 };
 
 // E§2: ±K weights on I (G dilated by {-1,0,1,2}), `passes` of the discrete Laplacian filter on I, then the

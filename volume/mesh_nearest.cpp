@@ -56,11 +56,19 @@ void TriangleHierarchy::bound(const Range& range) {
         for (const Vec3d& corner : corners_[i]) box.expand(corner);
 }
 
-TriangleHierarchy::Nearest TriangleHierarchy::distanceTo(std::int64_t triangle, const Vec3d& point) const {
+Vec3d TriangleHierarchy::footOn(std::int64_t triangle, const Vec3d& point) const {
     const Corners& c = corners_[std::size_t(triangle)];
     Vec3d barycentric;
-    const Vec3d closest = openvdb::math::closestPointOnTriangleToPoint(c[0], c[1], c[2], point, barycentric);
-    return {(closest - point).lengthSqr(), triangle};
+    return openvdb::math::closestPointOnTriangleToPoint(c[0], c[1], c[2], point, barycentric);
+}
+
+Vec3d TriangleHierarchy::areaNormal(std::int64_t triangle) const {
+    const Corners& c = corners_[std::size_t(triangle)];
+    return (c[1] - c[0]).cross(c[2] - c[0]);
+}
+
+TriangleHierarchy::Nearest TriangleHierarchy::distanceTo(std::int64_t triangle, const Vec3d& point) const {
+    return {(footOn(triangle, point) - point).lengthSqr(), triangle};
 }
 
 TriangleHierarchy::Nearest TriangleHierarchy::nearest(const Vec3d& point, Nearest best) const {

@@ -30,6 +30,12 @@ class TriangleHierarchy {
     // is nearly right makes it fast.
     Nearest nearest(const openvdb::Vec3d& point, Nearest bound) const;
 
+    // Where on one triangle the point nearest to `point` lies.
+    openvdb::Vec3d footOn(std::int64_t triangle, const openvdb::Vec3d& point) const;
+
+    // (b - a) x (c - a) of one triangle: 0 where it is degenerate.
+    openvdb::Vec3d areaNormal(std::int64_t triangle) const;
+
     // From point to one triangle: a good bound if it was nearest to a neighbouring point.
     Nearest distanceTo(std::int64_t triangle, const openvdb::Vec3d& point) const;
 

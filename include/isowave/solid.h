@@ -55,6 +55,8 @@ struct SolidOptions {
     std::optional<double> halfWidth = {};  // voxels each side in which distances are known; default 4
     // Voxels each side that the field is kept for, at most halfWidth; default 2.
     std::optional<double> band = {};
+    // Meshes, distance fit: thin walls and gaps are put where they are, and walls too thin for the lattice are kept whole.
+    bool walls = true;
 
     // Bytes that the job may take; default: 70 % of the computer's (or of the container's) memory.
     std::optional<double> maxMemory = {};
@@ -90,6 +92,17 @@ struct InputReport {
     std::shared_ptr<const InputReport> madeFrom;
 };
 
+// Thin walls and gaps of a mesh, and what was done for them. Lengths in voxels.
+struct WallSummary {
+    std::int64_t rows = 0;     // conditions on the field: on faces, at lattice points, in the middle of walls
+    int sweeps = 0;            // over them
+    std::int64_t unmet = 0;    // signs that could not be met
+    std::int64_t changed = 0;  // control points
+    std::int64_t thickened = 0;  // lattice points outside that a thickened wall or a closed gap took in
+    double thinnest = 0;         // 1 % of the walls of at most 4 voxels are thinner; 0: there are none
+    int leastRefine = 1;  // samples of a voxel along an axis, 1, 2 or 4, that a mesh with whole walls needs
+};
+
 // How the field was fitted, and how far it agrees with the input.
 struct FitSummary {
     FitMethod method = FitMethod::distance;
@@ -102,6 +115,7 @@ struct FitSummary {
     std::int64_t repaired = 0;       // control points changed, counted once a pass
     double repairFloor = 0;          // of K: what F times the sign has to reach for the repair to be content
     bool repairAgreed = true;        // it ended there, not at its limit of passes
+    std::optional<WallSummary> walls = {};  // of a mesh, distance fit
 };
 
 // A solid as a B-spline field, or as the pyramid of one. Cheap to copy: copies share it. Give it away with std::move()
