@@ -1,0 +1,43 @@
+// A closed mesh with more triangles than its shape needs -> the same surface with fewer, by collapsing edges. Fast, and safe
+// beside other sheets of the surface; the collapse that measures distances to the original is simplify/collapse.h.
+#pragma once
+
+#include <cstdint>
+
+#include "isowave/mesh.h"
+#include "isowave/progress.h"
+
+namespace isowave {
+
+struct CollapseOptions {
+    std::int64_t triangles = 0;  // how many to leave
+    double longest = 0;          // world units: no collapse makes an edge longer than this; 0: any length
+
+    static constexpr double kTurn = 75;      // degrees
+    static constexpr double kNeedle = 0.05;  // height by longest side
+};
+
+struct CollapseReport {
+    std::int64_t collapsed = 0;  // edges; each takes two triangles along
+    // Candidates that were left, most of them several times, since they would have
+    std::int64_t refusedTopology = 0;  // closed a handle, joined two sheets or flattened a tetrahedron
+    std::int64_t refusedShape = 0;     // turned a triangle too far, or made a needle or too long an edge
+    std::int64_t refusedSheets = 0;    // made triangles that intersect, or that come too close to tell
+    int rounds = 0;
+};
+
+// Edges are collapsed, those of the smallest quadric error first, until at most options.triangles are left, or, since
+// cubes of space are worked on at the same time, up to one collapse a cube less; more are left only where no collapse
+// is possible. The new vertex minimises the quadrics of both ends under the condition that the volume enclosed does not change.
+// (1) The mesh stays closed, oriented, 2-manifold, with its components and their genus.
+// (2) No pair of intersecting triangles is made. A mesh without one has none afterwards, however thin its walls are.
+// (3) The volume stays to rounding, unless no vertex near the edge keeps it (seen: 1e-6 of a part's).
+// (4) No triangle turns by more than kTurn in one collapse, or becomes a needle below kNeedle that was not a worse one.
+// Triangles that stay keep their order, and points theirs. Normals are cleared: they would have to be the surface's at
+// points that this function does not know to lie on it.
+// The same result, to the bit, for any number of threads.
+// REQUIRES: closed, oriented, 2-manifold; finite points.
+void collapseByQuadrics(TriangleMesh& mesh, const CollapseOptions& options, CollapseReport* report = nullptr,
+                        const Progress& progress = {});
+
+}  // namespace isowave
