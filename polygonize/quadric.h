@@ -17,7 +17,7 @@ struct Quadric {
     Vec3 b;
     double c = 0;
 
-    static constexpr double kSpread = 0.03;
+    static constexpr double kSpread = 0.001;
 
     // A plane through the centre. normal: as long as twice the triangle's area; a third of it is each corner's.
     static Quadric ofCorner(const Vec3& normal) {

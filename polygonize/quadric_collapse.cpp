@@ -90,14 +90,14 @@ using Cell = std::array<int, 3>;
 // coordinate, whatever rounding does; so a box overlaps just the cubes from that of its low corner to that of its high one.
 struct Lattice {
     Vec3 origin;
-    double side = 1;
+    double side = 1, perSide = 1;  // 1 / side
     Cell count{1, 1, 1};
 
     Cell cellOf(const Vec3& p) const {
         Cell cell;
         for (int a = 0; a < 3; ++a)
             cell[a] = static_cast<int>(
-                std::clamp((p[a] - origin[a]) / side, 0.0, static_cast<double>(count[a] - 1)));
+                std::clamp((p[a] - origin[a]) * perSide, 0.0, static_cast<double>(count[a] - 1)));
         return cell;
     }
     std::size_t size() const {
@@ -133,6 +133,7 @@ struct FanTriangle {
     Index id, b, c;
     Vec3 before, after;   // normals, as long as twice the area
     double longest2 = 0;  // squared longest side, after
+    Facing facing = 0;    // after
 };
 
 struct Candidate {
@@ -176,7 +177,7 @@ class Block {
         while (!heap_.empty() && report_.collapsed < limits.collapses) {
             const Entry top = heap_.front();
             if (!(top.cost <= limits.cost)) break;
-            std::pop_heap(heap_.begin(), heap_.end(), later);
+            std::pop_heap(heap_.begin(), heap_.end(), Later{});
             heap_.pop_back();
             if (take(top) && log) log->push_back(top.cost);
         }
@@ -215,11 +216,14 @@ class Block {
     struct Entry {
         double cost;
         Index v0, v1, stamp;
+        bool operator==(const Entry&) const = default;
     };
-    static bool later(const Entry& a, const Entry& b) {
-        if (a.cost != b.cost) return a.cost > b.cost;
-        return a.v0 != b.v0 ? a.v0 > b.v0 : a.v1 > b.v1;
-    }
+    struct Later {
+        bool operator()(const Entry& a, const Entry& b) const {
+            if (a.cost != b.cost) return a.cost > b.cost;
+            return a.v0 != b.v0 ? a.v0 > b.v0 : a.v1 > b.v1;
+        }
+    };
     static constexpr Index kPlaced = Index{1}
                                      << 31;  // of a stamp: the cost is that of the point that is taken
 
@@ -298,14 +302,14 @@ class Block {
     }
 
     void layCells(double side) {
-        cells_.side = side;
+        cells_.side = side, cells_.perSide = 1 / side;
         for (int a = 0; a < 3; ++a) {
             cells_.origin[a] = blocks_->origin[a] + blocks_->side * block_[a];
             cells_.count[a] = static_cast<int>(std::ceil(blocks_->side / side));
         }
         facing_.assign(cells_.size(), ~Facing{0});
         listed_ = false;
-        for (const Triangle& t : triangles_) face(t, normalOf(t), longest2Of(t));
+        for (const Triangle& t : triangles_) face(boxOf(t), facingOf(normalOf(t), longest2Of(t)));
     }
 
     double longest2Of(const Triangle& t) const {
@@ -320,9 +324,7 @@ class Block {
         return box;
     }
 
-    void face(const Triangle& t, const Vec3& normal, double longest2) {
-        const Facing facing = facingOf(normal, longest2);
-        const Box box = boxOf(t);
+    void face(const Box& box, Facing facing) {
         cells_.forCells(cells_.cellOf(box.low), cells_.cellOf(box.high), [&](std::size_t cell) {
             facing_[cell] &= facing;
             return true;
@@ -333,6 +335,7 @@ class Block {
 
     void fillHeap() {
         heap_.clear();
+        tried_ = {0, kNone, kNone, 0};
         for (const Triangle& t : triangles_)
             for (int k = 0; k < 3; ++k) {
                 const Index v0 = t[k], v1 = t[(k + 1) % 3];
@@ -340,13 +343,13 @@ class Block {
                 const double cost = costOf(v0, v1);
                 if (cost <= limits_.cost) heap_.push_back({cost, v0, v1, 0});
             }
-        std::make_heap(heap_.begin(), heap_.end(), later);
+        std::make_heap(heap_.begin(), heap_.end(), Later{});
     }
 
     void push(const Entry& entry) {
         if (!(entry.cost <= limits_.cost)) return;
         heap_.push_back(entry);
-        std::push_heap(heap_.begin(), heap_.end(), later);
+        std::push_heap(heap_.begin(), heap_.end(), Later{});
     }
 
     Quadric sumOf(Index v0, Index v1) const {
@@ -376,6 +379,9 @@ class Block {
             push({std::max(top.cost, costOf(v0, v1)), v0, v1, stamp});
             return false;
         }
+        const Entry trial{0, std::min(v0, v1), std::max(v0, v1), top.stamp};
+        if (tried_ == trial) return false;
+        tried_ = trial;
         Candidate& c = candidate_;
         c.v0 = v0, c.v1 = v1;
         if (!gather(c)) return ++report_.refusedTopology, false;
@@ -507,7 +513,7 @@ class Block {
     // covers, since none of its triangles is turned over, what the star has covered; nothing else lies there.
     bool facesOneWay(Candidate& c, const Cell& low, const Cell& high) const {
         Facing facing = ~Facing{0};
-        for (const FanTriangle& t : c) facing &= facingOf(t.after, t.longest2);
+        for (FanTriangle& t : c) facing &= t.facing = facingOf(t.after, t.longest2);
         cells_.forCells(low, high, [&](std::size_t cell) { return (facing &= facing_[cell]) != 0; });
         return facing != 0;
     }
@@ -621,8 +627,9 @@ class Block {
         for (int i = 0; i < c.size; ++i) {
             const FanTriangle& t = c.fan[i];
             triangles_[t.id] = {c.v0, t.b, t.c};
-            face(triangles_[t.id], t.after, t.longest2);
-            if (listed_) enter(t.id, boxOf(triangles_[t.id]), &before[i]);
+            const Box box = boxOf(triangles_[t.id]);
+            face(box, t.facing);
+            if (listed_) enter(t.id, box, &before[i]);
         }
         versions_[c.v0] += versions_[c.v1] + 1;
         into_[c.v1] = c.v0;
@@ -661,6 +668,9 @@ class Block {
     CollapseReport report_;
     Candidate candidate_;
     std::vector<Entry> heap_;
+    // An edge comes to stand in the heap twice when two of a triangle merge. Equal costs come one after the other, so that
+    // the second entry of one that was refused is known by this.
+    Entry tried_{};
     // By vertex.
     std::vector<Vec3> points_;
     std::vector<Index> vertexOf_;  // of the mesh
@@ -718,21 +728,24 @@ class Collapsing {
     CollapseReport run() {
         if (wanted_ == 0) return report_;
         cut(0);
-        double cost = pilot();
+        double cost = isSmall() ? kInfinity : pilot();
         for (int round = 0, idle = 0; left() > 0 && idle < kPatience; ++round) {
             progress_("collapsing", static_cast<double>(report_.collapsed) / static_cast<double>(wanted_));
             if (round > 0) cut(round);
-            if (round > 1) cost *= kRaise;
-            const std::int64_t before = report_.collapsed;
+            if (round > 1) cost = idle > 0 ? kInfinity : kRaise * cost;
+            const std::int64_t before = report_.collapsed, toDo = left();
             work(round, cost);
-            idle = report_.collapsed == before ? idle + 1 : 0;
+            idle = report_.collapsed - before < toDo / kIdle + 1 ? idle + 1 : 0;
             ++report_.rounds;
         }
         return report_;
     }
 
   private:
-    static constexpr int kPatience = 4;     // rounds without a collapse: every shift was tried
+    static constexpr std::size_t kSmall = 20'000;  // triangles
+    static constexpr int kPatience = 4;            // idle rounds: every shift was tried
+    static constexpr std::int64_t kIdle =
+        100;                                // a round is idle that does less than this part of what is left
     static constexpr double kRaise = 2;     // of the cost allowed, from round to round
     static constexpr double kShort = 0.97;  // of the collapses wanted are left to the pilot's cost
 
@@ -771,11 +784,15 @@ class Collapsing {
             if (first_[block] != first_[block + 1]) used_.push_back(block);
     }
 
+    // One block for all: it is done before a pilot would be.
+    bool isSmall() const { return mesh_.triangles.size() <= kSmall; }
+
     // Larger ones where they would be more than the triangles.
     void layBlocks(double side, double shift) {
-        const double most = 1000 + static_cast<double>(mesh_.triangles.size());
+        const double most = isSmall() ? 1 : 1000 + static_cast<double>(mesh_.triangles.size());
+        if (isSmall()) shift = 0;
         for (side = side > 0 ? side : 1;; side *= 2) {
-            blocks_.side = side;
+            blocks_.side = side, blocks_.perSide = 1 / side;
             double count = 1;
             for (int a = 0; a < 3; ++a) {
                 blocks_.origin[a] = bounds_.low[a] - shift * side;
@@ -797,11 +814,10 @@ class Collapsing {
                    blocks_, cell, cell_);
     }
 
-    // Collapses every k-th block, in a copy, farther than all are to be. Returns the cost up to which about
+    // Collapses some of the blocks, in copies, farther than all are to be. Returns the cost up to which about
     // the number of collapses wanted is done.
     double pilot() {
-        constexpr std::size_t kSample = 24;  // blocks
-        const std::size_t count = std::min(kSample, used_.size());
+        const std::size_t count = std::min(used_.size(), std::clamp<std::size_t>(used_.size() / 8, 4, 24));
         std::vector<std::vector<double>> costs(count);
         std::vector<std::int64_t> triangles(count);
         forEach(count, [&](Block& block, std::size_t i) {
