@@ -12,9 +12,6 @@ namespace isowave {
 struct CollapseOptions {
     std::int64_t triangles = 0;  // how many to leave
     double longest = 0;          // world units: no collapse makes an edge longer than this; 0: any length
-
-    static constexpr double kTurn = 75;      // degrees
-    static constexpr double kNeedle = 0.05;  // height by longest side
 };
 
 struct CollapseReport {
@@ -32,7 +29,8 @@ struct CollapseReport {
 // (1) The mesh stays closed, oriented, 2-manifold, with its components and their genus.
 // (2) No pair of intersecting triangles is made. A mesh without one has none afterwards, however thin its walls are.
 // (3) The volume stays to rounding, unless no vertex near the edge keeps it (seen: 1e-6 of a part's).
-// (4) No triangle turns by more than kTurn in one collapse, or becomes a needle below kNeedle that was not a worse one.
+// (4) No triangle turns by more than 75 degrees in one collapse, or becomes a needle (height below 0.05 of the longest
+//     side) that was not a worse one.
 // Triangles that stay keep their order, and points theirs. Normals are cleared: they would have to be the surface's at
 // points that this function does not know to lie on it.
 // The same result, to the bit, for any number of threads.
