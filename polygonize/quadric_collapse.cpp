@@ -111,22 +111,11 @@ class Collapsing {
     // One block for all: it is done before a pilot would be.
     bool isSmall() const { return mesh_.triangles.size() <= kSmall; }
 
-    // Larger ones where they would be more than the triangles.
     void layBlocks(double side, double shift) {
-        const double most = isSmall() ? 1 : 1000 + static_cast<double>(mesh_.triangles.size());
-        if (isSmall()) shift = 0;
-        for (side = side > 0 ? side : 1;; side *= 2) {
-            blocks_.side = side, blocks_.perSide = 1 / side;
-            double count = 1;
-            for (int a = 0; a < 3; ++a) {
-                blocks_.origin[a] = bounds_.low[a] - shift * side;
-                count *= std::floor((bounds_.high[a] - blocks_.origin[a]) / side) + 1;
-            }
-            if (!(count > most)) break;
-        }
-        for (int a = 0; a < 3; ++a)
-            blocks_.count[a] =
-                static_cast<int>(std::floor((bounds_.high[a] - blocks_.origin[a]) / blocks_.side)) + 1;
+        Box shifted = bounds_;
+        if (!isSmall())
+            for (int a = 0; a < 3; ++a) shifted.low[a] -= shift * side;
+        blocks_ = latticeOver(shifted, side, isSmall() ? 1 : 1000 + mesh_.triangles.size());
     }
 
     void load(Block& block, std::size_t used, bool first) const {

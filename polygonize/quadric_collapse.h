@@ -23,18 +23,20 @@ struct CollapseReport {
     int rounds = 0;
 };
 
-// Edges are collapsed, those of the smallest quadric error first, until at most options.triangles are left, or, since
-// cubes of space are worked on at the same time, up to one collapse a cube less; more are left only where no collapse
-// is possible. The new vertex minimises the quadrics of both ends under the condition that the volume enclosed does not change.
+// Collapses edges, those of the smallest quadric error first, until at most options.triangles are left. Cubes of space are
+// worked on at the same time, and each rounds its share of the collapses up, so that up to two triangles a cube may go beyond
+// that (seen: 0.1 %); more stay only where no collapse is possible. The new vertex minimises the quadrics of both ends under
+// the condition that the volume enclosed does not change (Garland and Heckbert 1997; Lindstrom and Turk 1998).
 // (1) The mesh stays closed, oriented, 2-manifold, with its components and their genus.
 // (2) No pair of intersecting triangles is made. A mesh without one has none afterwards, however thin its walls are.
-// (3) The volume stays to rounding, unless no vertex near the edge keeps it (seen: 1e-6 of a part's).
+// (3) The volume stays to rounding (seen: 1e-11 of a part's), unless the point that keeps it is farther from the edge than the
+//     edge is long; then the edge's middle is taken.
 // (4) No triangle turns by more than 75 degrees in one collapse, or becomes a needle (height below 0.05 of the longest
 //     side) that was not a worse one.
-// Triangles that stay keep their order, and points theirs. Normals are cleared: they would have to be the surface's at
-// points that this function does not know to lie on it.
-// The same result, to the bit, for any number of threads.
-// REQUIRES: closed, oriented, 2-manifold; finite points.
+// Triangles that stay keep their order, and points theirs. Normals are cleared: the new vertices lie near the surface that
+// the mesh was made of, not on it, and the caller knows where its normals come from.
+// The same result, to the bit, for any number of threads. Memory: 200 bytes a vertex of the input.
+// REQUIRES: closed, oriented, 2-manifold; finite points; fewer than 2^31 triangles.
 void collapseByQuadrics(TriangleMesh& mesh, const CollapseOptions& options, CollapseReport* report = nullptr,
                         const Progress& progress = {});
 

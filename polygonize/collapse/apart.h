@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "isowave/mesh.h"
 
@@ -19,6 +20,8 @@ namespace apart_detail {
 constexpr double kRounding = 1e-14;
 
 inline double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+inline Vec3 unit(const Vec3& v) { return v / std::max(length(v), std::numeric_limits<double>::min()); }
 
 struct Interval {
     double low, high;
@@ -79,8 +82,19 @@ inline bool triangleIsApartAtCorner(const Vec3& t1, const Vec3& t2, const Vec3& 
         const double x = dot(axis, otherT), y = dot(axis, otherU);
         return (x > cubic && y < -cubic) || (x < -cubic && y > cubic);
     };
-    return between(t1, t2, u1, u2) || between(t1, t2, u2, u1) || between(t2, t1, u1, u2) ||
-           between(t2, t1, u2, u1);
+    if (between(t1, t2, u1, u2) || between(t1, t2, u2, u1) || between(t2, t1, u1, u2) ||
+        between(t2, t1, u2, u1))
+        return true;
+    // In one plane, with rays that go on as those of the other cone, as in every flat lattice.
+    const Vec3 middleT = unit(t1) + unit(t2), middleU = unit(u1) + unit(u2);
+    const double linear = kRounding * size;
+    for (const Vec3& axis : {middleT, middleU, middleT - middleU}) {
+        const double a = dot(axis, t1), b = dot(axis, t2), x = dot(axis, u1), y = dot(axis, u2);
+        if ((a > linear && b > linear && x < -linear && y < -linear) ||
+            (a < -linear && b < -linear && x > linear && y > linear))
+            return true;
+    }
+    return false;
 }
 
 // Triangles over one edge, seen from the same side, with these normals (of any length): not folded onto each other to kFold,

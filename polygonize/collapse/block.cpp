@@ -18,10 +18,13 @@ void Block::load(const TriangleMesh& mesh, const std::vector<Quadric>& quadrics,
     number(mesh, begin, end);
     gatherStars();
     markFree();
+    isFirst_ = first;
+    quadrics_.assign(points_.size(), {});
     if (first)
         makeQuadrics();
     else
-        for (std::size_t v = 0; v < points_.size(); ++v) quadrics_[v] = quadrics[vertexOf_[v]];
+        for (std::size_t v = 0; v < points_.size(); ++v)
+            if (free_[v]) quadrics_[v] = quadrics[vertexOf_[v]];
     layCells(cell);
     counts_ = {};
 }
@@ -40,8 +43,7 @@ void Block::collapse(const Limits& limits, std::vector<double>* log) {
 
 void Block::store(TriangleMesh& mesh, std::vector<Quadric>& quadrics) const {
     for (std::size_t v = 0; v < points_.size(); ++v) {
-        if (!inside_[v]) continue;
-        quadrics[vertexOf_[v]] = quadrics_[v];
+        if (free_[v] || (isFirst_ && inside_[v])) quadrics[vertexOf_[v]] = quadrics_[v];
         if (free_[v]) mesh.points[vertexOf_[v]] = {points_[v].x, points_[v].y, points_[v].z};
     }
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -119,19 +121,19 @@ void Block::markFree() {
 }
 
 void Block::makeQuadrics() {
-    quadrics_.assign(points_.size(), {});
     for (const Triangle& t : triangles_) {
         const Quadric q = Quadric::ofCorner(normalOf(t));
         for (const Index v : t) quadrics_[v] += q;
     }
 }
 
+// Cubes over what is inside, larger ones where they would be many more than the triangles.
 void Block::layCells(double side) {
-    cells_.side = side, cells_.perSide = 1 / side;
-    for (int a = 0; a < 3; ++a) {
-        cells_.origin[a] = blocks_->origin[a] + blocks_->side * block_[a];
-        cells_.count[a] = static_cast<int>(std::ceil(blocks_->side / side));
-    }
+    Box box;
+    for (std::size_t v = 0; v < points_.size(); ++v)
+        if (free_[v]) box.add(points_[v]);
+    if (!(box.low.x <= box.high.x)) box.add(points_[0]);  // nothing to do here
+    cells_ = latticeOver(box, side, 64 + 4 * triangles_.size());
     facing_.assign(cells_.size(), ~Facing{0});
     listed_ = false;
     for (const Triangle& t : triangles_) face(boxOf(t), facingOf(normalOf(t), longest2Of(t)));
@@ -269,7 +271,7 @@ bool Block::place(Candidate& c) {
         reach2 = std::max(reach2, dot(side, side));
     }
     for (const Index id : c.removed) ofFirst += normalOf(triangles_[id]);
-    const Vec3 g = ofFirst + ofSecond;
+    const Vec3 g = c.normal = ofFirst + ofSecond;
     const double d = dot(ofSecond, edge);
     const Quadric q = sumOf(c.v0, c.v1);
     const QuadricSolver solver(q);
@@ -293,19 +295,29 @@ bool Block::place(Candidate& c) {
 }
 
 bool Block::isShapely(Candidate& c) const {
-    static const double kLeast2 = std::pow(std::cos(Limits::kTurn * std::numbers::pi / 180), 2);
-    constexpr double kNeedle2 = Limits::kNeedle * Limits::kNeedle;
     for (FanTriangle& t : c) {
         const Vec3 b = points_[t.b] - c.at, e = points_[t.c] - c.at, opposite = e - b;
         t.after = cross(b, e);
         t.longest2 = std::max({dot(b, b), dot(e, e), dot(opposite, opposite)});
-        const double cosine = dot(t.after, t.before), after2 = dot(t.after, t.after);
-        if (!(cosine > 0) || !(cosine * cosine > kLeast2 * after2 * dot(t.before, t.before))) return false;
         if (std::max(dot(b, b), dot(e, e)) > limits_.longest2) return false;
-        if (after2 < kNeedle2 * t.longest2 * t.longest2 && isThinner(t)) return false;
+        if (!turnsLittle(t.before, t.after) && !(wasNeedle(t) && turnsLittle(c.normal, t.after)))
+            return false;
+        if (isNeedle(t.after, t.longest2) && isThinner(t)) return false;
     }
     return true;
 }
+
+bool Block::turnsLittle(const Vec3& from, const Vec3& to) {
+    static const double kLeast2 = std::pow(std::cos(Limits::kTurn * std::numbers::pi / 180), 2);
+    const double cosine = dot(from, to);
+    return cosine > 0 && cosine * cosine > kLeast2 * dot(from, from) * dot(to, to);
+}
+
+bool Block::isNeedle(const Vec3& normal, double longest2) {
+    return dot(normal, normal) < Limits::kNeedle * Limits::kNeedle * longest2 * longest2;
+}
+
+bool Block::wasNeedle(const FanTriangle& t) const { return isNeedle(t.before, longest2Of(triangles_[t.id])); }
 
 bool Block::isThinner(const FanTriangle& t) const {
     const double longest2 = longest2Of(triangles_[t.id]);

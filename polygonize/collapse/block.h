@@ -52,6 +52,7 @@ struct Candidate {
     std::array<FanTriangle, kLargest> fan;
     int size = 0;
     int ofFirst = 0;  // triangles of the fan that were v0's; those of v1 follow
+    Vec3 normal;      // the sum of the star's, each as long as twice the triangle's area
     Vec3 at;          // p
     double cost = 0;
 
@@ -64,16 +65,19 @@ struct Counts {
     std::int64_t collapsed = 0, refusedTopology = 0, refusedShape = 0, refusedSheets = 0;
 };
 
+// For many blocks one after the other: load -> collapse -> store. Blocks may be loaded and stored at the same time: what
+// one of them stores none of the others loads.
 class Block {
   public:
-    // triangles: all that overlap the block. `first`: the quadrics are made, not read.
+    // begin .. end: the triangles that overlap the block. quadrics: by vertex, about it; made, not read, when this is the
+    // `first` round. cell: side of the cubes in which other sheets are looked for, world units.
     void load(const TriangleMesh& mesh, const std::vector<Quadric>& quadrics, bool first, const Index* begin,
               const Index* end, const Lattice& blocks, const Cell& block, double cell);
 
     // log: optional, gets the cost of each collapse.
     void collapse(const Limits& limits, std::vector<double>* log);
 
-    // Only what is inside is written. A triangle that vanished is left degenerate.
+    // Only what is inside is written. A triangle that vanished is left as {0, 0, 0}.
     void store(TriangleMesh& mesh, std::vector<Quadric>& quadrics) const;
 
     const Counts& counts() const { return counts_; }
@@ -97,46 +101,31 @@ class Block {
             return a.v0 != b.v0 ? a.v0 > b.v0 : a.v1 > b.v1;
         }
     };
-    static constexpr Index kPlaced = Index{1}
-                                     << 31;  // of a stamp: the cost is that of the point that is taken
+    static constexpr Index kPlaced = 0x80000000;  // of a stamp: the cost is that of the point taken
 
     // -- load
-
     void number(const TriangleMesh& mesh, const Index* begin, const Index* end);
-
     Index localOf(const TriangleMesh& mesh, Index vertex);
-
     bool isInside(const Vec3& p) const { return blocks_->cellOf(p) == block_; }
-
     void gatherStars();
-
     void markFree();
-
     void makeQuadrics();
 
     Vec3 normalOf(const Triangle& t) const {
         return cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]);
     }
-
     void layCells(double side);
-
     double longest2Of(const Triangle& t) const;
-
     Box boxOf(const Triangle& t) const;
-
     void face(const Box& box, Facing facing);
 
     // -- the heap
-
     void fillHeap();
-
     void push(const Entry& entry);
-
     Quadric sumOf(Index v0, Index v1) const;
 
     // The least value of the sum of both quadrics: c - b' A^-1 b.
     double costOf(Index v0, Index v1) const;
-
     Index mergedInto(Index v);
 
     // True when the edge was collapsed.
@@ -147,7 +136,6 @@ class Block {
     // The ends have just the two neighbours in common that face the edge, and are no tetrahedron's (the link condition of
     // Dey et al. 1999 for closed surfaces).
     bool gather(Candidate& c);
-
     FanTriangle turned(Index id, Index v) const;
 
     // The volume between star and fan is the sum of (a - x)'n / 6 over the star, n being the normal of a triangle, twice
@@ -155,32 +143,31 @@ class Block {
     // value of Q is at x = A^-1 b + l A^-1 g, with l such that x lies on the plane (Lindstrom and Turk 1998 for memoryless
     // quadrics).
     bool place(Candidate& c);
-
     bool isShapely(Candidate& c) const;
 
+    static bool turnsLittle(const Vec3& from, const Vec3& to);
+    static bool isNeedle(const Vec3& normal, double longest2);
+    // What direction a needle faces is noise: its star's normal says more.
+    bool wasNeedle(const FanTriangle& t) const;
     // Than it was.
     bool isThinner(const FanTriangle& t) const;
 
     // -- other sheets
-
     bool isClear(Candidate& c);
 
     // If all triangles in a box, and those of the fan, face one direction, the surface in the box is a graph over a plane: of
     // two sheets one above the other in a closed surface, every other one faces away. The fan has the star's border and
     // covers, since none of its triangles is turned over, what the star has covered; nothing else lies there.
     bool facesOneWay(Candidate& c, const Cell& low, const Cell& high) const;
-
     bool meetsNothing(Candidate& c, const Cell& low, const Cell& high);
 
     // Two of the fan: they have p in common, and perhaps a side.
     bool areApart(const Candidate& c, const FanTriangle& t, const FanTriangle& u) const;
-
     bool areApart(const Candidate& c, const FanTriangle& t, const Triangle& u) const;
 
-    // Lists of the triangles that overlap each cell, made when the first block's wall is thin enough to need them. Triangles
-    // that moved away since, or were collapsed, may stand in them.
+    // Lists of the triangles that overlap each cell, made when the first candidate needs them: thick solids have none.
+    // Triangles that moved away since, or were collapsed, may stand in them.
     void list();
-
     void enter(Index id, const Box& box, const Box* before);
 
     template <class Each>
@@ -197,11 +184,8 @@ class Block {
     }
 
     // -- apply
-
     void apply(Candidate& c);
-
     void leave(Index v, Index triangle);
-
     void joinStars(const Candidate& c);
 
     struct Slot {
@@ -213,6 +197,7 @@ class Block {
 
     const Lattice* blocks_ = nullptr;
     Cell block_{};
+    bool isFirst_ = false;
     Limits limits_;
     Counts counts_;
     Candidate candidate_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -97,5 +98,18 @@ struct Lattice {
                     if (!each(indexOf(x, y, z))) return;
     }
 };
+
+// Cubes of this side over a box, from its low corner on; the side is doubled until they are at most so many.
+inline Lattice latticeOver(const Box& box, double side, std::size_t atMost) {
+    for (side = side > 0 ? side : 1;; side *= 2) {
+        double count = 1;
+        for (int a = 0; a < 3; ++a) count *= std::floor((box.high[a] - box.low[a]) / side) + 1;
+        if (count > static_cast<double>(atMost)) continue;
+        Lattice lattice{box.low, side, 1 / side, {}};
+        for (int a = 0; a < 3; ++a)
+            lattice.count[a] = static_cast<int>(std::floor((box.high[a] - box.low[a]) / side)) + 1;
+        return lattice;
+    }
+}
 
 }  // namespace isowave::collapse
