@@ -31,8 +31,8 @@ struct CollapseReport {
 // (2) No pair of intersecting triangles is made. A mesh without one has none afterwards, however thin its walls are.
 // (3) The volume stays to rounding (seen: 1e-11 of a part's), unless the point that keeps it is farther from the edge than the
 //     edge is long; then the edge's middle is taken.
-// (4) No triangle turns by more than 75 degrees in one collapse, or becomes a needle (height below 0.05 of the longest
-//     side) that was not a worse one.
+// (4) No triangle turns by more than 75 degrees in one collapse (needles are compared with their neighbourhood), and none
+//     becomes a needle (height below 0.05 of the longest side) that is thinner than the thinnest one around.
 // Triangles that stay keep their order, and points theirs. Normals are cleared: the new vertices lie near the surface that
 // the mesh was made of, not on it, and the caller knows where its normals come from.
 // The same result, to the bit, for any number of threads. Memory: 200 bytes a vertex of the input.

@@ -295,6 +295,7 @@ bool Block::place(Candidate& c) {
 }
 
 bool Block::isShapely(Candidate& c) const {
+    double thinnest2 = -1;  // of the star, once it is asked for
     for (FanTriangle& t : c) {
         const Vec3 b = points_[t.b] - c.at, e = points_[t.c] - c.at, opposite = e - b;
         t.after = cross(b, e);
@@ -302,7 +303,9 @@ bool Block::isShapely(Candidate& c) const {
         if (std::max(dot(b, b), dot(e, e)) > limits_.longest2) return false;
         if (!turnsLittle(t.before, t.after) && !(wasNeedle(t) && turnsLittle(c.normal, t.after)))
             return false;
-        if (isNeedle(t.after, t.longest2) && isThinner(t)) return false;
+        if (!isNeedle(t.after, t.longest2)) continue;
+        if (thinnest2 < 0) thinnest2 = thinnestOf(c);
+        if (dot(t.after, t.after) < thinnest2 * t.longest2 * t.longest2) return false;
     }
     return true;
 }
@@ -319,9 +322,16 @@ bool Block::isNeedle(const Vec3& normal, double longest2) {
 
 bool Block::wasNeedle(const FanTriangle& t) const { return isNeedle(t.before, longest2Of(triangles_[t.id])); }
 
-bool Block::isThinner(const FanTriangle& t) const {
-    const double longest2 = longest2Of(triangles_[t.id]);
-    return dot(t.after, t.after) * longest2 * longest2 < dot(t.before, t.before) * t.longest2 * t.longest2;
+double Block::thinnestOf(const Candidate& c) const {
+    double least = kInfinity;
+    const auto add = [&](Index id) {
+        const Vec3 normal = normalOf(triangles_[id]);
+        const double longest2 = longest2Of(triangles_[id]);
+        least = std::min(least, dot(normal, normal) / (longest2 * longest2));
+    };
+    for (int i = 0; i < c.size; ++i) add(c.fan[i].id);
+    for (const Index id : c.removed) add(id);
+    return least;
 }
 
 // ---- other sheets

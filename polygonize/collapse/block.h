@@ -149,8 +149,8 @@ class Block {
     static bool isNeedle(const Vec3& normal, double longest2);
     // What direction a needle faces is noise: its star's normal says more.
     bool wasNeedle(const FanTriangle& t) const;
-    // Than it was.
-    bool isThinner(const FanTriangle& t) const;
+    // The least (height by longest side)^2 of the star's triangles.
+    double thinnestOf(const Candidate& c) const;
 
     // -- other sheets
     bool isClear(Candidate& c);
