@@ -66,7 +66,7 @@ class Collapsing {
     }
 
   private:
-    static constexpr std::size_t kSmall = 20'000;  // triangles
+    static constexpr std::size_t kSmall = 50'000;  // triangles
     static constexpr int kPatience = 4;            // idle rounds: every shift was tried
     static constexpr std::int64_t kIdle =
         100;                                // a round is idle that does less than this part of what is left
