@@ -22,7 +22,7 @@ using openvdb::Vec3f;
 
 constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
 constexpr double kFewThin = 0.01;       // of the surface: so little asks for no finer sampling of all of it
-constexpr double kFewThickened = 0.004; // of what is thin
+constexpr double kFewThickened = 0.004, kFewThickenedAtLevel1 = 0.05;  // of what is thin
 constexpr double kLongestRun = 2;      // of H: a longer one runs along a wall rather than across it
 constexpr double kKnownDistance = 3;  // voxels: level 0's field is a distance up to there
 
@@ -130,6 +130,7 @@ class Rows {
     const std::vector<ThinSample>& samples() const { return samples_; }
     const std::vector<FieldRow>& hard() const { return hard_; }
     const std::vector<FieldRow>& soft() const { return soft_; }
+    double meanVoxel() const { return scale_.H; }
     double tolerance() const { return 0.005 * scale_.H * slope_; }
     Vec3d toLevel(const Vec3d& at) const { return scale_.toLevel(at, origin_); }
     // By how much the wall is thickened on either side.
@@ -256,7 +257,9 @@ int LevelHold::refineFor(const BSplineField& level, const HoldOptions& options) 
         if (rows.grown(s) > 0) thickened += s.area;
     }
     if (2 * thin <= kFewThin * area_) return 1;
-    return thickened > kFewThickened * thin ? 4 : 2;
+    // At level 1 four samples are four times level 0's triangles, further up they are no more than these.
+    const double few = rows.meanVoxel() < 3 ? kFewThickenedAtLevel1 : kFewThickened;
+    return thickened > few * thin ? 4 : 2;
 }
 
 HoldReport LevelHold::apply(BSplineField& level, int refine, const HoldOptions& options, const Progress& progress) const {

@@ -15,6 +15,7 @@
 #include "polygonize/knot_insertion.h"
 #include "polygonize/level_iso.h"
 #include "polygonize/polygonize.h"
+#include "polygonize/quadric_collapse.h"
 #include "polygonize/refit.h"
 #include "polygonize/relax.h"
 
@@ -91,10 +92,12 @@ TriangleMesh LevelMesher::polygonizeAt(const BSplineField& field, double iso, in
 // ones do so less, and collapsing them by volumes (Lindstrom and Turk) keeps what they have gained: docs/fidelity.md.
 void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const {
     if (mesh.triangles.empty()) return;
-    const auto finer = static_cast<std::int64_t>(refine) * refine;
-    const bool normals = !mesh.normals.empty();
-    mesh = collapsedByVolume(mesh, static_cast<std::int64_t>(mesh.triangles.size()) / finer, progress_);
-    if (normals) mesh.normals = ZeroSet(field, iso).normalsOf(mesh, progress_);
+    const std::int64_t wanted = static_cast<std::int64_t>(mesh.triangles.size()) / (refine * refine);
+    if (options_.compact)
+        mesh = collapsedByVolume(mesh, wanted, progress_);
+    else
+        collapseByQuadrics(mesh, {.triangles = wanted}, nullptr, progress_);
+    mesh.normals = ZeroSet(field, iso).normalsOf(mesh, progress_);
 }
 
 // 0: neither is known.
