@@ -22,7 +22,7 @@ using openvdb::Vec3f;
 
 constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
 constexpr double kFewThin = 0.01;       // of the surface: so little asks for no finer sampling of all of it
-constexpr double kFewThickened = 0.004, kFewThickenedAtLevel1 = 0.05;  // of what is thin
+constexpr double kFewThickened = 0.002, kFewThickenedAtLevel1 = 0.05;  // of what is thin
 constexpr double kLongestRun = 2;      // of H: a longer one runs along a wall rather than across it
 constexpr double kKnownDistance = 3;  // voxels: level 0's field is a distance up to there
 
@@ -257,8 +257,8 @@ int LevelHold::refineFor(const BSplineField& level, const HoldOptions& options) 
         if (rows.grown(s) > 0) thickened += s.area;
     }
     if (2 * thin <= kFewThin * area_) return 1;
-    // At level 1 four samples are four times level 0's triangles, further up they are no more than these.
-    const double few = rows.meanVoxel() < 3 ? kFewThickenedAtLevel1 : kFewThickened;
+    // At level 1 four samples are four times level 0's triangles, at level 2 as many, from level 3 on few.
+    const double H = rows.meanVoxel(), few = H < 3 ? kFewThickenedAtLevel1 : H < 7 ? kFewThickened : 0;
     return thickened > few * thin ? 4 : 2;
 }
 

@@ -43,16 +43,22 @@ void putDeviation(LevelReport& report, const LevelMesh& level, const Progress& p
     report.rmsDeviation = deviation.rms;
 }
 
+// A pyramid's input is the solid that it was made of.
+InputTruth truthOf(const Solid& solid) {
+    const InputReport& input = solid.input();
+    return InputTruth::of(input.madeFrom ? *input.madeFrom : input);
+}
+
 // Makes and measures one mesh a step, level 0 first: the others are measured against it.
 class Maker {
   public:
     Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options,
-          const std::optional<Border>& openBorder, std::optional<double> inputVolume,
-          const LadderVisitor& visitor, const Progress& progress, StageClock& clock)
+          const std::optional<Border>& openBorder, const InputTruth& truth, const LadderVisitor& visitor,
+          const Progress& progress, StageClock& clock)
         : choice_(choice),
           budgets_(budgets),
           deviation_(options.deviation),
-          mesher_(options, openBorder, LevelMesher::Facts::thinToo, inputVolume, progress, clock),
+          mesher_(options, openBorder, LevelMesher::Facts::thinToo, truth, progress, clock),
           visitor_(visitor),
           progress_(progress),
           clock_(clock) {}
@@ -211,7 +217,7 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     lod::checkBudgets(budgetOptions, border.has_value());
     lod::Budgets budgets(budgetOptions);
     const lod::StepChoice choice(options, budgets.wanted());
-    lod::Maker maker(choice, budgets, options, border, solid.input().volume, visitor, progress, clock);
+    lod::Maker maker(choice, budgets, options, border, lod::truthOf(solid), visitor, progress, clock);
     Ladder ladder;
     ladder.input = solid.input();
     ladder.fit = solid.fit();
@@ -235,7 +241,7 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
     const double begin = clock.secondsSoFar();
-    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, solid.input().volume,
+    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, lod::truthOf(solid),
                             progress, clock);
     if (step != 0 && mesher.needsLevel0())
         mesher.make(0, state.field ? *state.field : state.pyramid->field(0, progress));
@@ -255,7 +261,7 @@ std::vector<LevelReport> describeLevels(const Pyramid& pyramid, const LevelOptio
     StageClock clock;
     const auto input = lod::inputOfSource(PyramidAccess::of(pyramid).source);
     lod::LevelMesher mesher(options, std::nullopt, lod::LevelMesher::Facts::few,
-                            input ? input->volume : std::nullopt, progress, clock);
+                            input ? lod::InputTruth::of(*input) : lod::InputTruth{}, progress, clock);
     std::vector<LevelReport> reports;
     SolidCounts before;
     for (int step = 0; step <= pyramid.stepCount(); step += kStepsPerLevel) {

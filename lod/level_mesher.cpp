@@ -57,6 +57,13 @@ FeatureFate fateOf(const Survival& s, std::int64_t now) {
 
 }  // namespace
 
+InputTruth InputTruth::of(const InputReport& input) {
+    InputTruth truth{input.volume, {}};
+    if (input.parts && input.handles && input.cavities)
+        truth.counts = {*input.parts, *input.handles, *input.cavities};
+    return truth;
+}
+
 bool isMore(const SolidCounts& now, const SolidCounts& before) {
     return now.parts > before.parts || now.handles > before.handles || now.cavities > before.cavities;
 }
@@ -64,6 +71,7 @@ bool isMore(const SolidCounts& now, const SolidCounts& before) {
 // What the coarser steps are compared with.
 struct LevelMesher::Level0 {
     double volume = 0;
+    SolidCounts counts;
     std::optional<ThinParts> thin;
     std::optional<SolidFeatures> features;
     std::vector<SurfaceSample> surface;  // for refit
@@ -71,12 +79,12 @@ struct LevelMesher::Level0 {
 };
 
 LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                         std::optional<double> inputVolume, const Progress& progress, StageClock& clock)
+                         const InputTruth& truth, const Progress& progress, StageClock& clock)
     : options_(options),
       openBorder_(openBorder),
       wantsThin_(options.hold == Holding::shift ||
                  (options.hold == Holding::none && facts == Facts::thinToo)),
-      inputVolume_(inputVolume),
+      truth_(truth),
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
@@ -101,7 +109,7 @@ void LevelMesher::compact(TriangleMesh& mesh, int refine, const BSplineField& fi
 }
 
 // 0: neither is known.
-double LevelMesher::volumeToKeep() const { return inputVolume_.value_or(level0_ ? level0_->volume : 0); }
+double LevelMesher::volumeToKeep() const { return truth_.volume.value_or(level0_ ? level0_->volume : 0); }
 
 // The volume without the specks that will be removed.
 double LevelMesher::isoPreservingVolume(const LevelMesh& level, double smallest) const {
@@ -115,7 +123,7 @@ double LevelMesher::isoPreservingVolume(const LevelMesh& level, double smallest)
     const double error = match.volume / volumeToKeep() - 1;
     if (std::abs(error) > kPreserved)
         progress_.say(fmt::format("step {}: the volume of {} is out of reach: {:+.3g} % at iso {:+.3g} K",
-                                  level.report.step, inputVolume_ ? "the input" : "level 0", 100 * error,
+                                  level.report.step, truth_.volume ? "the input" : "level 0", 100 * error,
                                   match.iso / field.K));
     return match.iso;
 }
@@ -133,6 +141,7 @@ void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& 
     level0_ = std::make_unique<Level0>();
     if (mesh.triangles.empty()) return;
     level0_->volume = volumeWithoutSpecks(mesh, 0);
+    if (options_.hold == Holding::local) level0_->counts = countsOf(topologyOf(mesh));
     if (options_.refit) level0_->surface = surfaceSamples(mesh);
     if (options_.hold == Holding::local) {
         const StageClock::Scope scope(clock_, "hold");
@@ -193,15 +202,46 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
 
 LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     const BSplineField field = fieldToDraw(step, given);
-    const int refine = refineFor(step, field);
+    int refine = refineFor(step, field);
     LevelMesh level = madeAt(refine, step, field);
-    if (step == 0 || options_.hold != Holding::shift || openBorder_ || refine == kFinestRefine) return level;
+    if (options_.hold == Holding::shift) return shifted(std::move(level), step, field);
+    if (!holds(step) || options_.refine || openBorder_) return level;
+    while (refine < kFinestRefine && isMore(countsOf(level.report.topology), level0_->counts)) {
+        LevelMesh finer = madeAt(refine *= 2, step, field);
+        if (!isMore(countsOf(level.report.topology), countsOf(finer.report.topology))) break;
+        level = std::move(finer);
+    }
+    return level;
+}
+
+LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& field) {
+    const int refine = level.report.refine;
+    if (step == 0 || openBorder_ || refine == kFinestRefine) return level;
     LevelMesh finer = madeAt(2 * refine, step, field);
     const auto pieces = [](const LevelMesh& l) {
         return l.report.topology.components + l.report.topology.genus;
     };
     const bool fewer = !finer.mesh.triangles.empty() && pieces(finer) < pieces(level);
     return fewer ? std::move(finer) : std::move(level);
+}
+
+// The least that gives the input's parts, handles and cavities, and its volume as nearly as a finer one does.
+int LevelMesher::refineOfLevel0(const BSplineField& field) const {
+    constexpr double kNear = 0.005, kNoNearer = 0.002;  // of the volume
+    if (options_.hold != Holding::local || openBorder_ || !truth_.volume) return 1;
+    const auto isRight = [&](const MeshTopology& t) {
+        return !truth_.counts || countsOf(t) == *truth_.counts;
+    };
+    MeshTopology now = topologyOf(polygonizeAt(field, 0, 1));
+    for (int refine = 1; refine < kFinestRefine; refine *= 2) {
+        const bool near = std::abs(now.volume / *truth_.volume - 1) <= kNear;
+        if (near && isRight(now)) return refine;
+        const MeshTopology finer = topologyOf(polygonizeAt(field, 0, 2 * refine));
+        const bool nearer = std::abs(finer.volume - now.volume) > kNoNearer * *truth_.volume;
+        if (!nearer && countsOf(finer) == countsOf(now)) return refine;
+        now = finer;
+    }
+    return kFinestRefine;
 }
 
 std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, const SolidCounts& before) const {
@@ -249,6 +289,7 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest) {
 
 int LevelMesher::refineFor(int step, const BSplineField& field) const {
     if (options_.refine) return *options_.refine;
+    if (step == 0) return refineOfLevel0(field);
     return holds(step) ? level0_->hold->refineFor(field) : 1;
 }
 

@@ -14,6 +14,14 @@ namespace isowave::lod {
 // Whether there are more of anything.
 bool isMore(const SolidCounts& now, const SolidCounts& before);
 
+// What is known of the solid that level 0 was made of.
+struct InputTruth {
+    std::optional<double> volume;       // world units^3
+    std::optional<SolidCounts> counts;  // parts, handles, cavities
+
+    static InputTruth of(const InputReport& input);
+};
+
 struct LevelMesh {
     BSplineField field;  // that of the step, or what `refit` made of it
     TriangleMesh mesh;   // cut off at an open border
@@ -24,15 +32,15 @@ struct LevelMesh {
 class LevelMesher {
   public:
     enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
-    // inputVolume: that of the solid's input, world units^3, which levels are measured against and keep with
-    // preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
+    // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
     LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                std::optional<double> inputVolume, const Progress& progress, StageClock& clock);
+                const InputTruth& truth, const Progress& progress, StageClock& clock);
     ~LevelMesher();
 
     // Whether make() must have seen step 0 before any other.
     bool needsLevel0() const { return isowave::needsLevel0(options_) || wantsThin_; }
-    // With Holding::shift at twice the refinement where that has fewer components and handles.
+    // Sampled as options say, else as finely as it takes: level 0 for the input's parts, handles, cavities and volume, the
+    // others for what is thin and for no more parts, handles and cavities than level 0 has.
     LevelMesh make(int step, const BSplineField& field);
 
     // Of which kind are the parts, handles and cavities that a level has beyond those of the level before? Those that
@@ -48,6 +56,8 @@ class LevelMesher {
     TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
     BSplineField fieldToDraw(int step, const BSplineField& field) const;
     int refineFor(int step, const BSplineField& field) const;
+    int refineOfLevel0(const BSplineField& field) const;
+    LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
@@ -66,7 +76,7 @@ class LevelMesher {
     const LevelOptions options_;
     std::optional<Border> openBorder_;
     bool wantsThin_;
-    std::optional<double> inputVolume_;
+    InputTruth truth_;
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

@@ -9,6 +9,7 @@
 #include "base/triangle.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
+#include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
 #include "volume/distance.h"
@@ -74,6 +75,17 @@ std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, doub
     return volume;
 }
 
+// What level 0 should have.
+void putTruth(InputReport& report, const ClosedMesh& input, const Shape& shape, double voxel) {
+    report.volume = volumeOf(input, shape, voxel);
+    if (!report.volume) return;
+    const MeshTopology topology = topologyOf(input.loaded.mesh);
+    if (!topology.closed() || !topology.manifold() || !topology.oriented()) return;
+    report.parts = topology.parts;
+    report.handles = topology.genus;
+    report.cavities = topology.cavities;
+}
+
 InputReport reportOf(const ClosedMesh& input, const std::string& name, double voxel) {
     InputReport report;
     report.path = name;
@@ -130,7 +142,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
             return wallsFitted(field, grid, shift, mesh, fitting.distance.halfWidth, progress);
         };
     fit(solid, fitting, samples, limit, kRemedy, progress, clock);
-    solid.input.volume = volumeOf(input, *solid.field->shape, voxel);
+    putTruth(solid.input, input, *solid.field->shape, voxel);
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

@@ -59,7 +59,8 @@ Fields fieldsOfPyramid(const InputReport& input) {
     const Fields source = under("input.", input.source);
     if (source.empty()) return std::move(list).fields();
     const Json object = objectOf(source);
-    for (const char* key : {"dimensions", "spacing", "iso", "volume", "space"})
+    for (const char* key :
+         {"dimensions", "spacing", "iso", "volume", "parts", "handles", "cavities", "space"})
         if (object.contains(key)) list.put(key, object[key]);
     list.put("source", object);
     return std::move(list).fields();
@@ -74,6 +75,9 @@ Fields fieldsOfMesh(const InputReport& input) {
     list.putIf("spacing", input.spacing);
     list.putIf("triangles", input.triangles);
     list.putIf("volume", input.volume);
+    list.putIf("parts", input.parts);
+    list.putIf("handles", input.handles);
+    list.putIf("cavities", input.cavities);
     list.put("repair", input.repairNotes);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
     return std::move(list).fields();
@@ -208,6 +212,9 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
     input->direction = valueOf<std::array<std::array<double, 3>, 3>>(json, "direction");
     input->triangles = valueOf<std::int64_t>(json, "triangles");
     input->volume = valueOf<double>(json, "volume");
+    input->parts = valueOf<std::int64_t>(json, "parts");
+    input->handles = valueOf<std::int64_t>(json, "handles");
+    input->cavities = valueOf<std::int64_t>(json, "cavities");
     input->repairNotes =
         valueOf<std::vector<std::string>>(json, "repair").value_or(std::vector<std::string>());
     input->space = choiceOf<Space>(json, "space", kSpaces);

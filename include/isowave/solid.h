@@ -84,7 +84,8 @@ struct InputReport {
     // World units^3. Masks and labels: voxels inside times the volume of one, unless the border is open. Meshes: their
     // own, unless parts of them overlap or the orientation cannot be trusted. Others do not say.
     std::optional<double> volume;
-    std::optional<Space> space;  // axes that meshes of the solid have
+    std::optional<std::int64_t> parts, handles, cavities;  // of a mesh whose volume is known
+    std::optional<Space> space;                            // axes that meshes of the solid have
 
     // Of a pyramid: what its file says about the solid that it was made of, "input.path" -> "\"part.stl\"", values as
     // JSON; and the same with types, as far as it is understood.
