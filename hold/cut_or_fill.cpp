@@ -1,0 +1,227 @@
+// limitTopology = rounds of
+//   find    what could be cut or filled (topology_candidates.h)
+//   try     each on its surroundings alone: Euler number and volume of the mesh there (local_edit.h)
+//   choose  the cheapest that do not touch each other, as many as are too many
+//   apply   all together and count the mesh; where it is not as it should be, each half on its own
+#include "hold/cut_or_fill.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <set>
+
+#include "hold/topology_candidates.h"
+#include "polygonize/specks.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using What = TopologyEdit::What;
+
+constexpr What kOrder[] = {What::part, What::cavity, What::handle};
+
+std::int64_t countOf(const SolidCounts& counts, What what) {
+    return what == What::part ? counts.parts : what == What::handle ? counts.handles : counts.cavities;
+}
+std::optional<std::int64_t> limitOf(const SolidLimits& limits, What what) {
+    return what == What::part ? limits.parts : what == What::handle ? limits.handles : limits.cavities;
+}
+const char* nameOf(What what) {
+    return what == What::part ? "parts" : what == What::handle ? "handles" : "cavities";
+}
+
+// An option that was tried and does what it should.
+struct Choice {
+    TopologyEdit edit;
+    LocalEdit change;
+};
+
+// How an option is tried: gently first.
+struct Manner {
+    double margin;
+    bool faces;
+};
+constexpr Manner kManners[] = {{0.25, true}, {0.5, false}, {1.0, true}};
+
+// Options are tried while their estimate is below this multiple of the cheapest one's that works.
+constexpr double kWorthTrying = 4;
+// More are tried than are too many: some do not work, some touch each other.
+constexpr std::size_t kSpare = 16;
+
+class Limiter {
+  public:
+    Limiter(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+            const Progress& progress)
+        : field_(field), refine_(refine), limits_(limits), smallest_(smallestPart), progress_(progress) {}
+
+    TopologyEdits run() {
+        result_.before = result_.after = count(field_);
+        bool goesOn = !limits_.allow(result_.after);
+        while (goesOn) {
+            progress_("limiting the topology", 0);
+            goesOn = round() && !limits_.allow(result_.after);
+        }
+        result_.met = limits_.allow(result_.after);
+        if (!result_.met) result_.why = why();
+        return result_;
+    }
+
+  private:
+    SolidCounts count(const BSplineField& field) const {
+        return meshedCounts(field, refine_, smallest_, progress_);
+    }
+    std::int64_t tooMany(What what) const {
+        const std::int64_t now = countOf(result_.after, what);
+        return now - std::min(now, limitOf(limits_, what).value_or(now));
+    }
+
+    // -> whether something was changed.
+    bool round() {
+        const TopologyCandidates candidates(field_, refine_, smallest_, progress_);
+        for (const What what : kOrder)
+            if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
+        return false;
+    }
+    bool roundOf(What what, const TopologyCandidates& candidates) {
+        const auto need = static_cast<std::size_t>(tooMany(what));
+        const std::size_t before = result_.edits.size();
+        // What failed is remembered, so that a second look sees what comes after it.
+        for (std::size_t most = 2 * need + kSpare, seen = 0; result_.edits.size() == before; most *= 4) {
+            const std::vector<EditOptions> all = candidates.of(what, most);
+            if (all.size() == seen) break;
+            seen = all.size();
+            take(chosen(tried(all), need));
+        }
+        return result_.edits.size() > before;
+    }
+
+    // ---- try
+
+    std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) const {
+        std::vector<std::optional<Choice>> choices(all.size());
+        tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
+            progress_.check();
+            choices[i] = cheapest(all[i]);
+        });
+        return choices;
+    }
+    std::optional<Choice> cheapest(const EditOptions& options) const {
+        std::optional<Choice> best;
+        double estimate = 0;
+        for (const EditOption& option : options) {
+            if (failed_.count(keyOf(option.edit))) continue;
+            if (best && option.estimate > kWorthTrying * estimate) break;
+            auto choice = tryOption(option);
+            if (!choice) continue;
+            if (!best) estimate = option.estimate;
+            if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume)) best = std::move(choice);
+        }
+        return best;
+    }
+    std::optional<Choice> tryOption(const EditOption& option) const {
+        for (const Manner& manner : kManners) {
+            EditPlan plan = option.plan;
+            plan.margin = manner.margin;
+            plan.faces = manner.faces;
+            LocalEdit change = tryEdit(field_, refine_, plan);
+            if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
+            TopologyEdit edit = option.edit;
+            edit.volume = change.volume;
+            return Choice{edit, std::move(change)};
+        }
+        return {};
+    }
+
+    // ---- choose
+
+    // Each edit was made for the control points around it as they are.
+    static bool touch(const LocalEdit& a, const LocalEdit& b) {
+        constexpr int kReads = 4;
+        CoordBBox around = a.box;
+        around.expand(kReads);
+        return around.hasOverlap(b.box);
+    }
+    static std::vector<Choice> chosen(const std::vector<std::optional<Choice>>& all, std::size_t most) {
+        std::vector<const Choice*> order;
+        for (const auto& choice : all)
+            if (choice) order.push_back(&*choice);
+        std::stable_sort(order.begin(), order.end(), [](const Choice* a, const Choice* b) {
+            return std::abs(a->edit.volume) < std::abs(b->edit.volume);
+        });
+        std::vector<Choice> result;
+        for (const Choice* choice : order) {
+            if (result.size() == most) break;
+            if (std::none_of(result.begin(), result.end(),
+                             [&](const Choice& c) { return touch(c.change, choice->change); }))
+                result.push_back(*choice);
+        }
+        return result;
+    }
+
+    // ---- apply
+
+    void take(const std::vector<Choice>& batch) {
+        if (batch.empty()) return;
+        BSplineField changed = field_;
+        changed.controlPoints = field_.controlPoints->deepCopy();
+        changed.shape = field_.shape->deepCopy();
+        for (const Choice& choice : batch) apply(choice.change, changed);
+        const SolidCounts now = count(changed);
+        if (isAsWanted(now, batch)) {
+            field_ = changed;
+            result_.after = now;
+            for (const Choice& choice : batch) result_.edits.push_back(choice.edit);
+        } else if (batch.size() == 1) {
+            failed_.insert(keyOf(batch.front().edit));
+        } else {
+            const auto middle = batch.begin() + static_cast<std::ptrdiff_t>(batch.size() / 2);
+            take({batch.begin(), middle});
+            take({middle, batch.end()});
+        }
+    }
+    bool isAsWanted(const SolidCounts& now, const std::vector<Choice>& batch) const {
+        const auto less = static_cast<std::int64_t>(batch.size());
+        for (const What what : kOrder) {
+            const std::int64_t before = countOf(result_.after, what), after = countOf(now, what);
+            if (what == batch.front().edit.what ? after != before - less : after > before) return false;
+        }
+        return true;
+    }
+
+    using Key = std::array<double, 5>;
+    static Key keyOf(const TopologyEdit& edit) {
+        return {double(edit.kind), double(edit.what), edit.at[0], edit.at[1], edit.at[2]};
+    }
+
+    std::string why() const {
+        std::string text;
+        for (const What what : kOrder)
+            if (tooMany(what) > 0)
+                text += fmt::format("{}{} {} where {} are allowed", text.empty() ? "" : ", ",
+                                    countOf(result_.after, what), nameOf(what), *limitOf(limits_, what));
+        return text + fmt::format(": {} cuts and fills were made, {} others change more than they should",
+                                  result_.edits.size(), failed_.size());
+    }
+
+    BSplineField& field_;
+    int refine_;
+    SolidLimits limits_;
+    double smallest_;
+    const Progress& progress_;
+    std::set<Key> failed_;  // alone, on the whole mesh
+    TopologyEdits result_;
+};
+
+}  // namespace
+
+TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                            const Progress& progress) {
+    return Limiter(field, refine, limits, smallestPart, progress).run();
+}
+
+}  // namespace isowave

@@ -1,0 +1,52 @@
+// What could be cut or filled to have one part, handle or cavity less.
+#pragma once
+
+#include <vector>
+
+#include "hold/local_edit.h"
+#include "hold/cut_or_fill.h"
+#include "hold/mesh_lattice.h"
+
+namespace isowave {
+
+// One way to do it.
+struct EditOption {
+    TopologyEdit edit;  // without its volume
+    EditPlan plan;
+    double estimate = 0;            // of the volume, in lattice cells
+    std::optional<int> euler = {};  // by which the mesh's Euler number changes then, where that is known
+};
+// All ways to get rid of the same thing, the one with the smallest estimate first.
+using EditOptions = std::vector<EditOption>;
+
+class TopologyCandidates {
+  public:
+    // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left out.
+    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Progress& progress);
+
+    // By least estimate. Up to `most` things; the largest part is not among them.
+    std::vector<EditOptions> of(TopologyEdit::What what, std::size_t most) const;
+
+  private:
+    using Points = std::vector<std::int64_t>;
+
+    EditOptions handle(const PersistentClass& c) const;
+    EditOptions part(const PersistentClass& c, std::size_t largest) const;
+    EditOptions cavity(const PersistentClass& c) const;
+    Points flooded(std::int64_t from) const;
+    std::size_t largestPart() const;
+    void addPlug(std::int64_t at, bool fill, int euler, EditOptions& options) const;
+    void addWhole(std::int64_t from, const Points& points, bool fill, EditOptions& options) const;
+    void addDecider(std::int64_t at, bool fill, int euler, EditOptions& options) const;
+    std::optional<std::int64_t> anchor(std::int64_t at, bool fill) const;
+    TopologyEdit editAt(const openvdb::Vec3d& place, bool fill) const;
+
+    const BSplineField& field_;
+    const Progress& progress_;
+    int refine_;
+    double smallest_;        // in lattice cells of the mesh
+    MeshLattice mesh_, found_;  // the lattice that the mesh samples; the one that classes are found on, as fine or twice
+    std::vector<PersistentClass> classes_;
+};
+
+}  // namespace isowave
