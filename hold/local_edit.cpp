@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "hold/mesh_lattice.h"
+#include "polygonize/cell_table.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "volume/row_ascent.h"
@@ -47,8 +48,9 @@ class Trial {
         LocalEdit edit;
         edit.box = box_;
         const MeshSize before = sizeOf(local_, refine_);
+        const std::vector<FieldRow> demands = rows();
         if (plan_.whole) startBeyond();
-        ascend(local_, rows(), {.tolerance = tolerance_, .rounds = 100});
+        ascend(local_, demands, {.tolerance = tolerance_, .rounds = 100});
         const MeshSize after = sizeOf(local_, refine_);
         edit.volume = after.volume - before.volume;
         edit.euler = after.euler - before.euler;
@@ -120,14 +122,33 @@ class Trial {
     }
 
     bool isWanted(const Coord& c) const { return wanted_.count(c) != 0; }
+    bool insideAfter(const Coord& c) const {
+        const Coord p = c - planned_.min();
+        return after_[(std::size_t(p[0]) * planned_.dim()[1] + p[1]) * planned_.dim()[2] + p[2]] & 1;
+    }
+    bool isPlanned(const Coord& c) const {
+        const Coord p = c - planned_.min();
+        return after_[(std::size_t(p[0]) * planned_.dim()[1] + p[1]) * planned_.dim()[2] + p[2]] & 2;
+    }
+    // Signs to come: bit 0 inside, bit 1 of the plan.
+    void foresee() {
+        planned_ = rowBox();
+        planned_.expand(1);
+        after_.reserve(planned_.volume());
+        for (auto at = planned_.begin(); at; ++at) {
+            const bool wanted = isWanted(*at);
+            after_.push_back(static_cast<char>((wanted ? plan_.fill : lattice_.at(*at) < 0) | wanted << 1));
+        }
+    }
 
-    std::vector<FieldRow> rows() const {
+    std::vector<FieldRow> rows() {
+        foresee();
         std::vector<FieldRow> rows;
         for (const Vec3d& at : places_) rows.push_back(rowOf(at, plan_.fill, plan_.margin * step_));
         const CoordBBox box = rowBox();
         for (auto at = box.begin(); at; ++at) {
-            if (!isWanted(*at)) rows.push_back(keptSign((*at).asVec3d() / refine_, lattice_.at(*at)));
-            for (int normal = 0; normal < 3; ++normal) addFace(*at, normal, rows);
+            if (!isPlanned(*at)) rows.push_back(keptSign((*at).asVec3d() / refine_, lattice_.at(*at)));
+            addCell(*at, rows);
         }
         return rows;
     }
@@ -139,24 +160,29 @@ class Trial {
         return rowOf(at, f < 0, std::clamp(std::abs(f), 3 * tolerance_, 0.05 * step_));
     }
 
-    bool insideAfter(const Coord& c) const { return isWanted(c) ? plan_.fill : lattice_.at(c) < 0; }
-
-    // A face whose corners will leave a choice keeps its sign where its corners do. Beside a plan's point it is outside
-    // for a fill and inside for a cut, which joins neither to what touches it at a corner.
-    void addFace(const Coord& low, int normal, std::vector<FieldRow>& rows) const {
-        std::array<Coord, 4> corner{low, low, low, low};
-        ++corner[1][(normal + 1) % 3], ++corner[3][(normal + 2) % 3];
-        ++corner[2][(normal + 1) % 3], ++corner[2][(normal + 2) % 3];
-        const bool first = insideAfter(corner[0]);
-        if (insideAfter(corner[1]) == first || insideAfter(corner[2]) != first || insideAfter(corner[3]) == first)
-            return;
-        const Vec3d middle = (low.asVec3d() + corner[2].asVec3d()) / (2.0 * refine_);
-        const bool beside = std::any_of(corner.begin(), corner.end(), [&](const Coord& c) { return isWanted(c); });
-        if (std::find(plan_.places.begin(), plan_.places.end(), middle) != plan_.places.end()) return;
-        if (!beside)
-            rows.push_back(keptSign(middle, evaluate(local_, middle)));
-        else if (plan_.faces)
-            rows.push_back(rowOf(middle, !plan_.fill, 3 * tolerance_));
+    // Where the corners of a cell will leave a choice, F keeps its sign in the middle of its low faces and of itself.
+    void addCell(const Coord& low, std::vector<FieldRow>& rows) const {
+        unsigned pattern = 0;
+        bool beside = false;
+        for (int c = 0; c < kCellCorners; ++c) {
+            const Coord corner = low.offsetBy(c & 1, c >> 1 & 1, c >> 2);
+            pattern |= static_cast<unsigned>(insideAfter(corner)) << c;
+            beside = beside || isPlanned(corner);
+        }
+        if (cellTable().isPlain(pattern) || (beside && !plan_.faces)) return;
+        const Vec3d middle = low.asVec3d() + Vec3d(0.5);
+        keep(middle, rows);
+        for (int a = 0; a < 3; ++a) {
+            if (!(cellTable().ambiguousFaces(pattern) >> (2 * a) & 1)) continue;
+            Vec3d face = middle;
+            face[a] -= 0.5;
+            keep(face, rows);
+        }
+    }
+    void keep(const Vec3d& latticePlace, std::vector<FieldRow>& rows) const {
+        const Vec3d at = latticePlace / refine_;
+        if (std::find(plan_.places.begin(), plan_.places.end(), at) == plan_.places.end())
+            rows.push_back(keptSign(at, evaluate(local_, at)));
     }
 
     int refine_;
@@ -167,6 +193,8 @@ class Trial {
     openvdb::FloatGrid::Ptr before_;
     MeshLattice lattice_;
     std::unordered_set<Coord> wanted_;
+    CoordBBox planned_;
+    std::vector<char> after_;
     double step_ = 0, tolerance_ = 0;
 };
 

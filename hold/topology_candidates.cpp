@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hold/plug.h"
+#include "polygonize/cell_table.h"
 #include "polygonize/specks.h"
 
 namespace isowave {
@@ -27,9 +28,10 @@ bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estima
 
 TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart,
                                        const Progress& progress)
-    : field_(field), progress_(progress), refine_(refine), mesh_(meshLattice(field, refine, progress)) {
+    : field_(field), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
-    found_ = latticePoints(field, 2 * refine) <= kMostDecided ? decidedLattice(field, refine, progress) : mesh_;
+    twice_ = latticePoints(field, 2 * refine) <= kMostDecided;
+    found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
     const std::vector<float>& values = found_.function.values;
     constexpr float kBelowZero = -std::numeric_limits<float>::denorm_min();
     classes_ = classesAt(found_.function, kBelowZero, *std::max_element(values.begin(), values.end()), progress);
@@ -42,41 +44,55 @@ TopologyEdit TopologyCandidates::editAt(const Vec3d& place, bool fill) const {
     return edit;
 }
 
-// A point of the lattice that the mesh samples for one that classes are found on: itself, or, of the corners of its
-// edge, face or cell that are on the side that will change, the one where |F| is least.
-std::optional<std::int64_t> TopologyCandidates::anchor(std::int64_t at, bool fill) const {
-    if (found_.finer == mesh_.finer) return at;
+// Points of the lattice that the mesh samples for one that classes are found on: itself, or, of the corners of its edge,
+// face or cell, those on the side that will change, the one with the least |F| first.
+std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const {
     const Coord c = found_.coordOf(at);
-    std::optional<std::int64_t> best;
+    if (!twice_) return {c};
+    std::vector<std::pair<float, Coord>> found;
     for (int k = 0; k < 8; ++k) {
-        const Coord corner((c[0] + (k >> 2 & c[0] & 1)) >> 1, (c[1] + (k >> 1 & c[1] & 1)) >> 1,
-                           (c[2] + (k & c[2] & 1)) >> 1);
-        if (!mesh_.contains(corner)) continue;
-        const std::int64_t i = mesh_.indexOf(corner);
-        const std::vector<float>& f = mesh_.function.values;
-        if ((f[i] < 0) == fill) continue;
-        if (!best || std::abs(f[i]) < std::abs(f[*best])) best = i;
+        const Coord corner = c.offsetBy(k >> 2 & c[0] & 1 ? 1 : -(c[0] & 1), k >> 1 & c[1] & 1 ? 1 : -(c[1] & 1),
+                                        k & c[2] & 1 ? 1 : -(c[2] & 1));
+        const float f = found_.at(corner);
+        if ((f < 0) != fill) found.emplace_back(std::abs(f), corner >> 1);
     }
-    return best;
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::vector<Coord> result;
+    for (const auto& [height, corner] : found) result.push_back(corner);
+    return result;
 }
 
 void TopologyCandidates::addPlug(std::int64_t at, bool fill, int euler, EditOptions& options) const {
-    const auto start = anchor(at, fill);
-    if (!start) return;
-    for (const int radius : kRadii) {
-        const auto plug = leastPlug(mesh_, *start, fill, radius);
-        if (!plug) continue;
-        EditOption option{editAt(mesh_.placeOf(*start), fill), {}, double(plug->points.size()), euler};
+    constexpr std::size_t kMostAnchors = 3;
+    std::size_t left = kMostAnchors;
+    for (const Coord& start : anchors(at, fill)) {
+        EditOption option{editAt(start.asVec3d() / refine_, fill), {}, 0, euler};
         option.plan.fill = fill;
-        for (const std::int64_t p : plug->points) option.plan.points.push_back(mesh_.coordOf(p));
-        options.push_back(std::move(option));
-        return;
+        for (const int radius : kRadii)
+            if (option.plan.points.empty()) option.plan.points = leastPlug(fine_, start, fill, radius);
+        option.estimate = double(option.plan.points.size());
+        if (option.estimate > 0) options.push_back(std::move(option));
+        if (--left == 0) return;
     }
 }
 
 // Where the field is asked about a face or a cell its answer there is all that need change.
 void TopologyCandidates::addDecider(std::int64_t at, bool fill, int euler, EditOptions& options) const {
-    if (found_.finer == mesh_.finer || parityOf(found_.coordOf(at)) < 2) return;
+    const Coord c = found_.coordOf(at);
+    if (!twice_ || parityOf(c) < 2) return;
+    unsigned pattern = 0;
+    for (int k = 0; k < kCellCorners; ++k) {
+        const int x = k & 1, y = k >> 1 & 1, z = k >> 2;
+        // Of a face: the cell above it.
+        const Coord corner(c[0] + (c[0] & 1 ? 2 * x - 1 : 2 * x), c[1] + (c[1] & 1 ? 2 * y - 1 : 2 * y),
+                           c[2] + (c[2] & 1 ? 2 * z - 1 : 2 * z));
+        pattern |= static_cast<unsigned>(found_.at(corner) < 0) << k;
+    }
+    const int normal = !(c[0] & 1) ? 0 : !(c[1] & 1) ? 1 : 2;
+    const bool asked = parityOf(c) == 3 ? !cellTable().isPlain(pattern)
+                                        : (cellTable().ambiguousFaces(pattern) >> (2 * normal) & 1) != 0;
+    if (!asked) return;
     EditOption option{editAt(found_.placeOf(at), fill), {}, 0.5, euler};
     option.plan.fill = fill;
     option.plan.places = {found_.placeOf(at)};
@@ -122,10 +138,9 @@ void TopologyCandidates::addWhole(std::int64_t from, const Points& points, bool 
     EditOption option{editAt(found_.placeOf(from), fill), {}, 0, {}};
     option.plan.fill = fill;
     option.plan.whole = true;
-    const int ratio = found_.finer / mesh_.finer;
     for (const std::int64_t p : points) {
         const Coord c = found_.coordOf(p);
-        if (ratio == 1 || parityOf(c) == 0) option.plan.points.push_back(ratio == 1 ? c : c >> 1);
+        if (!twice_ || parityOf(c) == 0) option.plan.points.push_back(twice_ ? c >> 1 : c);
     }
     option.estimate = double(option.plan.points.size());
     if (!option.plan.points.empty()) options.push_back(std::move(option));
@@ -141,8 +156,7 @@ std::size_t TopologyCandidates::largestPart() const {
 EditOptions TopologyCandidates::part(const PersistentClass& c, std::size_t largest) const {
     EditOptions options;
     const Points points = flooded(c.birthPoint);
-    const int ratio = found_.finer / mesh_.finer;
-    if (double(points.size()) / (ratio * ratio * ratio) < smallest_) return options;
+    if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
     if (points.size() < largest) addWhole(c.birthPoint, points, false, options);
     if (c.deathPoint == PersistentClass::kNever) return options;
     addDecider(c.deathPoint, true, -2, options);
@@ -154,8 +168,7 @@ EditOptions TopologyCandidates::cavity(const PersistentClass& c) const {
     EditOptions options;
     if (c.deathPoint != PersistentClass::kNever) {
         const Points points = flooded(c.deathPoint);
-        const int ratio = found_.finer / mesh_.finer;
-        if (double(points.size()) / (ratio * ratio * ratio) < smallest_) return options;
+        if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
         addWhole(c.deathPoint, points, true, options);
     }
     addDecider(c.birthPoint, false, -2, options);

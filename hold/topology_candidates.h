@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "hold/local_edit.h"
 #include "hold/cut_or_fill.h"
+#include "hold/local_edit.h"
 #include "hold/mesh_lattice.h"
 
 namespace isowave {
@@ -38,14 +38,16 @@ class TopologyCandidates {
     void addPlug(std::int64_t at, bool fill, int euler, EditOptions& options) const;
     void addWhole(std::int64_t from, const Points& points, bool fill, EditOptions& options) const;
     void addDecider(std::int64_t at, bool fill, int euler, EditOptions& options) const;
-    std::optional<std::int64_t> anchor(std::int64_t at, bool fill) const;
+    std::vector<openvdb::Coord> anchors(std::int64_t at, bool fill) const;
     TopologyEdit editAt(const openvdb::Vec3d& place, bool fill) const;
 
     const BSplineField& field_;
     const Progress& progress_;
     int refine_;
     double smallest_;        // in lattice cells of the mesh
-    MeshLattice mesh_, found_;  // the lattice that the mesh samples; the one that classes are found on, as fine or twice
+    BSplineField fine_;  // on the lattice that the mesh samples
+    MeshLattice found_;  // where classes are found: that lattice, or twice as fine
+    bool twice_;
     std::vector<PersistentClass> classes_;
 };
 
