@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
+#include <map>
 #include <set>
 
 #include "hold/topology_candidates.h"
@@ -50,6 +50,8 @@ constexpr Manner kManners[] = {{0.25, true}, {0.5, false}, {1.0, true}};
 
 // Options are tried while their estimate is below this multiple of the cheapest one's that works.
 constexpr double kWorthTrying = 4;
+// Of K: how deep holes may be that are filled.
+constexpr double kDeepest = 0.95;
 // More are tried than are too many: some do not work, some touch each other.
 constexpr std::size_t kSpare = 16;
 
@@ -82,7 +84,9 @@ class Limiter {
 
     // -> whether something was changed.
     bool round() {
-        const TopologyCandidates candidates(field_, refine_, smallest_, progress_);
+        // A cavity's deepest point may lie where the field is cut off; holes and gaps as deep as that are too wide.
+        const double last = tooMany(What::cavity) > 0 ? 2 * field_.K : kDeepest * field_.K;
+        const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, progress_);
         for (const What what : kOrder)
             if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
         return false;
@@ -102,13 +106,39 @@ class Limiter {
 
     // ---- try
 
-    std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) const {
+    std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) {
         std::vector<std::optional<Choice>> choices(all.size());
+        std::vector<char> isNew(all.size());
         tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
             progress_.check();
-            choices[i] = cheapest(all[i]);
+            const auto known = tried_.find(keyOf(all[i]));
+            isNew[i] = known == tried_.end();
+            choices[i] = isNew[i] ? cheapest(all[i]) : known->second.choice;
         });
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (isNew[i]) tried_[keyOf(all[i])] = {readBy(all[i]), choices[i]};
         return choices;
+    }
+    // The control points that trying reads.
+    CoordBBox readBy(const EditOptions& options) const {
+        CoordBBox box;
+        for (const EditOption& option : options) {
+            for (const Coord& c : option.plan.points) {
+                box.expand(Coord::floor(c.asVec3d() / refine_));
+                box.expand(Coord::ceil(c.asVec3d() / refine_));
+            }
+            for (const openvdb::Vec3d& place : option.plan.places) box.expand(Coord::floor(place));
+        }
+        constexpr int kReads = 7;
+        box.expand(kReads);
+        return box;
+    }
+    // What was found out near an edit no longer holds.
+    void forgetAround(const CoordBBox& changed) {
+        std::erase_if(tried_, [&](const auto& entry) { return entry.second.reads.hasOverlap(changed); });
+        CoordBBox starts(Coord(changed.min().asVec3i() * refine_), Coord(changed.max().asVec3i() * refine_));
+        starts.expand(kWidestPlug + 2 * refine_ + 2);
+        plugs_.forget(starts);
     }
     std::optional<Choice> cheapest(const EditOptions& options) const {
         std::optional<Choice> best;
@@ -175,9 +205,16 @@ class Limiter {
         if (isAsWanted(now, batch)) {
             field_ = changed;
             result_.after = now;
-            for (const Choice& choice : batch) result_.edits.push_back(choice.edit);
+            for (const Choice& choice : batch) {
+                result_.edits.push_back(choice.edit);
+                forgetAround(choice.change.box);
+            }
         } else if (batch.size() == 1) {
             failed_.insert(keyOf(batch.front().edit));
+            std::erase_if(tried_, [&](const auto& entry) {
+                const auto& choice = entry.second.choice;
+                return choice && keyOf(choice->edit) == keyOf(batch.front().edit);
+            });
         } else {
             const auto middle = batch.begin() + static_cast<std::ptrdiff_t>(batch.size() / 2);
             take({batch.begin(), middle});
@@ -198,6 +235,12 @@ class Limiter {
         return {double(edit.kind), double(edit.what), edit.at[0], edit.at[1], edit.at[2]};
     }
 
+    static std::vector<Key> keyOf(const EditOptions& options) {
+        std::vector<Key> key;
+        for (const EditOption& option : options) key.push_back(keyOf(option.edit));
+        return key;
+    }
+
     std::string why() const {
         std::string text;
         for (const What what : kOrder)
@@ -214,6 +257,12 @@ class Limiter {
     double smallest_;
     const Progress& progress_;
     std::set<Key> failed_;  // alone, on the whole mesh
+    struct Tried {
+        CoordBBox reads;
+        std::optional<Choice> choice;
+    };
+    std::map<std::vector<Key>, Tried> tried_;
+    PlugMemo plugs_;
     TopologyEdits result_;
 };
 

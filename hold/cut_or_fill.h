@@ -46,6 +46,6 @@ struct TopologyEdits {
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress = {});
 
-inline constexpr int kWidestPlug = 24;  // lattice steps of the mesh from the middle
+inline constexpr int kWidestPlug = 12;  // lattice steps of the mesh from the middle
 
 }  // namespace isowave

@@ -18,7 +18,7 @@ using openvdb::Vec3d;
 
 // Points of the decided lattice up to which classes are found on it (8 us a point near the surface); beyond, on the mesh's own.
 constexpr double kMostDecided = 8e6;
-constexpr int kRadii[] = {3, 6, 12, kWidestPlug};
+constexpr int kRadii[] = {3, 6, kWidestPlug};
 
 int parityOf(const Coord& c) { return (c[0] & 1) + (c[1] & 1) + (c[2] & 1); }
 
@@ -26,15 +26,14 @@ bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estima
 
 }  // namespace
 
-TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart,
-                                       const Progress& progress)
-    : field_(field), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
+TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last,
+                                       PlugMemo& memo, const Progress& progress)
+    : field_(field), memo_(memo), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
     twice_ = latticePoints(field, 2 * refine) <= kMostDecided;
     found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
-    const std::vector<float>& values = found_.function.values;
     constexpr float kBelowZero = -std::numeric_limits<float>::denorm_min();
-    classes_ = classesAt(found_.function, kBelowZero, *std::max_element(values.begin(), values.end()), progress);
+    classes_ = classesAt(found_.function, kBelowZero, static_cast<float>(last), progress);
 }
 
 TopologyEdit TopologyCandidates::editAt(const Vec3d& place, bool fill) const {
@@ -69,8 +68,11 @@ void TopologyCandidates::addPlug(std::int64_t at, bool fill, int euler, EditOpti
     for (const Coord& start : anchors(at, fill)) {
         EditOption option{editAt(start.asVec3d() / refine_, fill), {}, 0, euler};
         option.plan.fill = fill;
-        for (const int radius : kRadii)
-            if (option.plan.points.empty()) option.plan.points = leastPlug(fine_, start, fill, radius);
+        option.plan.points = memo_.at(start, fill, [&] {
+            for (const int radius : kRadii)
+                if (auto plug = leastPlug(fine_, start, fill, radius); !plug.empty()) return plug;
+            return PlugMemo::Plug{};
+        });
         option.estimate = double(option.plan.points.size());
         if (option.estimate > 0) options.push_back(std::move(option));
         if (--left == 0) return;

@@ -1,6 +1,9 @@
 // What could be cut or filled to have one part, handle or cavity less.
 #pragma once
 
+#include <map>
+#include <mutex>
+#include <tuple>
 #include <vector>
 
 #include "hold/cut_or_fill.h"
@@ -19,10 +22,39 @@ struct EditOption {
 // All ways to get rid of the same thing, the one with the smallest estimate first.
 using EditOptions = std::vector<EditOption>;
 
+// Plugs that were grown before, for as long as the field around them stays as it is. Safe from any thread.
+class PlugMemo {
+  public:
+    using Plug = std::vector<openvdb::Coord>;
+    // make() gives the plug of a start where none is known.
+    template <class Make>
+    Plug at(const openvdb::Coord& start, bool fill, const Make& make) {
+        const std::tuple key(start, fill);
+        {
+            const std::lock_guard lock(mutex_);
+            if (const auto found = plugs_.find(key); found != plugs_.end()) return found->second;
+        }
+        Plug plug = make();
+        const std::lock_guard lock(mutex_);
+        return plugs_.emplace(key, std::move(plug)).first->second;
+    }
+    // Of starts in a box of the lattice that the mesh samples.
+    void forget(const openvdb::CoordBBox& box) {
+        std::erase_if(plugs_, [&](const auto& entry) { return box.isInside(std::get<0>(entry.first)); });
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<std::tuple<openvdb::Coord, bool>, Plug> plugs_;
+};
+
 class TopologyCandidates {
   public:
-    // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left out.
-    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Progress& progress);
+    // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left
+    // out. last: the value of F up to which holes, gaps and cavities are followed.
+    // memo: of the same field and refinement.
+    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last, PlugMemo& memo,
+                       const Progress& progress);
 
     // By least estimate. Up to `most` things; the largest part is not among them.
     std::vector<EditOptions> of(TopologyEdit::What what, std::size_t most) const;
@@ -42,6 +74,7 @@ class TopologyCandidates {
     TopologyEdit editAt(const openvdb::Vec3d& place, bool fill) const;
 
     const BSplineField& field_;
+    PlugMemo& memo_;
     const Progress& progress_;
     int refine_;
     double smallest_;        // in lattice cells of the mesh
