@@ -39,6 +39,12 @@ const char* nameOf(What what) {
 struct Choice {
     TopologyEdit edit;
     LocalEdit change;
+    OptionKey key;
+};
+// The cheapest of the options of one thing that do what they should, and those that do not.
+struct Tried {
+    std::optional<Choice> choice;
+    std::vector<OptionKey> useless;
 };
 
 // How an option is tried: gently first.
@@ -86,7 +92,7 @@ class Limiter {
     bool round() {
         // A cavity's deepest point may lie where the field is cut off; holes and gaps as deep as that are too wide.
         const double last = tooMany(What::cavity) > 0 ? 2 * field_.K : kDeepest * field_.K;
-        const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, progress_);
+        const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, useless_, progress_);
         for (const What what : kOrder)
             if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
         return false;
@@ -94,12 +100,13 @@ class Limiter {
     bool roundOf(What what, const TopologyCandidates& candidates) {
         const auto need = static_cast<std::size_t>(tooMany(what));
         const std::size_t before = result_.edits.size();
-        // What failed is remembered, so that a second look sees what comes after it.
-        for (std::size_t most = 2 * need + kSpare, seen = 0; result_.edits.size() == before; most *= 4) {
+        for (std::size_t most = 2 * need + kSpare; result_.edits.size() == before;) {
+            const std::size_t useless = useless_.size();
             const std::vector<EditOptions> all = candidates.of(what, most);
-            if (all.size() == seen) break;
-            seen = all.size();
             take(chosen(tried(all), need));
+            if (result_.edits.size() > before || useless_.size() > useless) continue;
+            if (all.size() < most) break;
+            most *= kSpare;
         }
         return result_.edits.size() > before;
     }
@@ -107,16 +114,18 @@ class Limiter {
     // ---- try
 
     std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) {
-        std::vector<std::optional<Choice>> choices(all.size());
-        std::vector<char> isNew(all.size());
+        std::vector<Tried> results(all.size());
         tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
             progress_.check();
-            const auto known = tried_.find(keyOf(all[i]));
-            isNew[i] = known == tried_.end();
-            choices[i] = isNew[i] ? cheapest(all[i]) : known->second.choice;
+            const auto known = known_.find(keysOf(all[i]));
+            results[i] = known == known_.end() ? cheapest(all[i]) : known->second.tried;
         });
-        for (std::size_t i = 0; i < all.size(); ++i)
-            if (isNew[i]) tried_[keyOf(all[i])] = {readBy(all[i]), choices[i]};
+        std::vector<std::optional<Choice>> choices;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            known_[keysOf(all[i])] = {readBy(all[i]), results[i]};
+            useless_.insert(results[i].useless.begin(), results[i].useless.end());
+            choices.push_back(std::move(results[i].choice));
+        }
         return choices;
     }
     // The control points that trying reads.
@@ -135,23 +144,28 @@ class Limiter {
     }
     // What was found out near an edit no longer holds.
     void forgetAround(const CoordBBox& changed) {
-        std::erase_if(tried_, [&](const auto& entry) { return entry.second.reads.hasOverlap(changed); });
+        std::erase_if(known_, [&](const auto& entry) { return entry.second.reads.hasOverlap(changed); });
         CoordBBox starts(Coord(changed.min().asVec3i() * refine_), Coord(changed.max().asVec3i() * refine_));
         starts.expand(kWidestPlug + 2 * refine_ + 2);
         plugs_.forget(starts);
+        std::erase_if(useless_, [&](const OptionKey& key) {
+            const openvdb::Vec3d at = field_.transform().worldToIndex({key[2], key[3], key[4]});
+            return starts.isInside(Coord::round(at * refine_));
+        });
     }
-    std::optional<Choice> cheapest(const EditOptions& options) const {
-        std::optional<Choice> best;
+    Tried cheapest(const EditOptions& options) const {
+        Tried tried;
+        std::optional<Choice>& best = tried.choice;
         double estimate = 0;
         for (const EditOption& option : options) {
-            if (failed_.count(keyOf(option.edit))) continue;
             if (best && option.estimate > kWorthTrying * estimate) break;
             auto choice = tryOption(option);
+            if (!choice) tried.useless.push_back(keyOf(option));
             if (!choice) continue;
             if (!best) estimate = option.estimate;
             if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume)) best = std::move(choice);
         }
-        return best;
+        return tried;
     }
     std::optional<Choice> tryOption(const EditOption& option) const {
         for (const Manner& manner : kManners) {
@@ -162,7 +176,7 @@ class Limiter {
             if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
             TopologyEdit edit = option.edit;
             edit.volume = change.volume;
-            return Choice{edit, std::move(change)};
+            return Choice{edit, std::move(change), keyOf(option)};
         }
         return {};
     }
@@ -210,11 +224,7 @@ class Limiter {
                 forgetAround(choice.change.box);
             }
         } else if (batch.size() == 1) {
-            failed_.insert(keyOf(batch.front().edit));
-            std::erase_if(tried_, [&](const auto& entry) {
-                const auto& choice = entry.second.choice;
-                return choice && keyOf(choice->edit) == keyOf(batch.front().edit);
-            });
+            useless_.insert(batch.front().key);
         } else {
             const auto middle = batch.begin() + static_cast<std::ptrdiff_t>(batch.size() / 2);
             take({batch.begin(), middle});
@@ -230,15 +240,10 @@ class Limiter {
         return true;
     }
 
-    using Key = std::array<double, 5>;
-    static Key keyOf(const TopologyEdit& edit) {
-        return {double(edit.kind), double(edit.what), edit.at[0], edit.at[1], edit.at[2]};
-    }
-
-    static std::vector<Key> keyOf(const EditOptions& options) {
-        std::vector<Key> key;
-        for (const EditOption& option : options) key.push_back(keyOf(option.edit));
-        return key;
+    static std::vector<OptionKey> keysOf(const EditOptions& options) {
+        std::vector<OptionKey> keys;
+        for (const EditOption& option : options) keys.push_back(keyOf(option));
+        return keys;
     }
 
     std::string why() const {
@@ -248,7 +253,7 @@ class Limiter {
                 text += fmt::format("{}{} {} where {} are allowed", text.empty() ? "" : ", ",
                                     countOf(result_.after, what), nameOf(what), *limitOf(limits_, what));
         return text + fmt::format(": {} cuts and fills were made, {} others change more than they should",
-                                  result_.edits.size(), failed_.size());
+                                  result_.edits.size(), useless_.size());
     }
 
     BSplineField& field_;
@@ -256,12 +261,12 @@ class Limiter {
     SolidLimits limits_;
     double smallest_;
     const Progress& progress_;
-    std::set<Key> failed_;  // alone, on the whole mesh
-    struct Tried {
+    std::set<OptionKey> useless_;  // on the whole mesh or on its surroundings alone
+    struct Known {
         CoordBBox reads;
-        std::optional<Choice> choice;
+        Tried tried;
     };
-    std::map<std::vector<Key>, Tried> tried_;
+    std::map<std::vector<OptionKey>, Known> known_;
     PlugMemo plugs_;
     TopologyEdits result_;
 };

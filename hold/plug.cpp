@@ -35,6 +35,7 @@ class Grower {
         grow();
         if (flipIfSimple(at_)) return plug;
         flip(at_);
+        if (!isAttached()) return plug;
         prune();
         grown_.push_back(at_);
         for (const std::int64_t i : grown_) plug.push_back(low_ + (values_.point(i) >> 1));
@@ -57,6 +58,15 @@ class Grower {
         Neighbours inside = 0;
         for (int n = 0; n < 27; ++n) inside |= static_cast<Neighbours>(signs_.inside(i + near_[n])) << n;
         return inside & ~(1u << kCentreBit);
+    }
+
+    // Whether the saddle is joined to more of X: along an axis, or across a face.
+    bool isAttached() const {
+        for (int n = 0; n < 27; ++n) {
+            const int axes = simple_point::differing(n, kCentreBit);
+            if ((axes == 1 || (axes == 2 && isX(at_ + near_[n]))) && isX(at_ + 2 * near_[n])) return true;
+        }
+        return false;
     }
 
     // Places around a lattice point: edges, faces, cells, each after what it follows from.

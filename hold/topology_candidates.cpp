@@ -15,6 +15,7 @@ namespace {
 
 using openvdb::Coord;
 using openvdb::Vec3d;
+using What = TopologyEdit::What;
 
 // Points of the decided lattice up to which classes are found on it (8 us a point near the surface); beyond, on the mesh's own.
 constexpr double kMostDecided = 8e6;
@@ -22,13 +23,16 @@ constexpr int kRadii[] = {3, 6, kWidestPlug};
 
 int parityOf(const Coord& c) { return (c[0] & 1) + (c[1] & 1) + (c[2] & 1); }
 
+// One handle less, or one part or cavity joined to another.
+int eulerOf(What what) { return what == What::handle ? 2 : -2; }
+
 bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estimate < b.estimate; }
 
 }  // namespace
 
 TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last,
-                                       PlugMemo& memo, const Progress& progress)
-    : field_(field), memo_(memo), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
+                                       PlugMemo& memo, const std::set<OptionKey>& useless, const Progress& progress)
+    : field_(field), memo_(memo), useless_(useless), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
     twice_ = latticePoints(field, 2 * refine) <= kMostDecided;
     found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
@@ -36,8 +40,9 @@ TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, do
     classes_ = classesAt(found_.function, kBelowZero, static_cast<float>(last), progress);
 }
 
-TopologyEdit TopologyCandidates::editAt(const Vec3d& place, bool fill) const {
+TopologyEdit TopologyCandidates::editAt(const Vec3d& place, TopologyEdit::What what, bool fill) const {
     TopologyEdit edit;
+    edit.what = what;
     edit.kind = fill ? TopologyEdit::Kind::fill : TopologyEdit::Kind::cut;
     edit.at = field_.transform().indexToWorld(place);
     return edit;
@@ -62,25 +67,26 @@ std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const
     return result;
 }
 
-void TopologyCandidates::addPlug(std::int64_t at, bool fill, int euler, EditOptions& options) const {
+void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
     constexpr std::size_t kMostAnchors = 3;
     std::size_t left = kMostAnchors;
     for (const Coord& start : anchors(at, fill)) {
-        EditOption option{editAt(start.asVec3d() / refine_, fill), {}, 0, euler};
-        option.plan.fill = fill;
-        option.plan.points = memo_.at(start, fill, [&] {
-            for (const int radius : kRadii)
-                if (auto plug = leastPlug(fine_, start, fill, radius); !plug.empty()) return plug;
-            return PlugMemo::Plug{};
-        });
-        option.estimate = double(option.plan.points.size());
-        if (option.estimate > 0) options.push_back(std::move(option));
+        for (const int radius : kRadii) {
+            EditOption option{editAt(start.asVec3d() / refine_, what, fill), {}, 0, eulerOf(what)};
+            option.plan.fill = fill;
+            option.plan.points =
+                memo_.at(start, fill, radius, [&] { return leastPlug(fine_, start, fill, radius); });
+            option.estimate = double(option.plan.points.size());
+            if (option.plan.points.empty() || useless_.count(keyOf(option))) continue;
+            options.push_back(std::move(option));
+            break;
+        }
         if (--left == 0) return;
     }
 }
 
 // Where the field is asked about a face or a cell its answer there is all that need change.
-void TopologyCandidates::addDecider(std::int64_t at, bool fill, int euler, EditOptions& options) const {
+void TopologyCandidates::addDecider(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
     const Coord c = found_.coordOf(at);
     if (!twice_ || parityOf(c) < 2) return;
     unsigned pattern = 0;
@@ -95,7 +101,7 @@ void TopologyCandidates::addDecider(std::int64_t at, bool fill, int euler, EditO
     const bool asked = parityOf(c) == 3 ? !cellTable().isPlain(pattern)
                                         : (cellTable().ambiguousFaces(pattern) >> (2 * normal) & 1) != 0;
     if (!asked) return;
-    EditOption option{editAt(found_.placeOf(at), fill), {}, 0.5, euler};
+    EditOption option{editAt(found_.placeOf(at), what, fill), {}, 0.5, eulerOf(what)};
     option.plan.fill = fill;
     option.plan.places = {found_.placeOf(at)};
     options.push_back(std::move(option));
@@ -104,11 +110,11 @@ void TopologyCandidates::addDecider(std::int64_t at, bool fill, int euler, EditO
 // A saddle's two ways: the ring is cut where it is thinnest, or the hole is filled in its middle.
 EditOptions TopologyCandidates::handle(const PersistentClass& c) const {
     EditOptions options;
-    addDecider(c.birthPoint, false, 2, options);
-    addPlug(c.birthPoint, false, 2, options);
+    addDecider(c.birthPoint, What::handle, false, options);
+    addPlug(c.birthPoint, What::handle, false, options);
     if (c.deathPoint == PersistentClass::kNever) return options;
-    addDecider(c.deathPoint, true, 2, options);
-    addPlug(c.deathPoint, true, 2, options);
+    addDecider(c.deathPoint, What::handle, true, options);
+    addPlug(c.deathPoint, What::handle, true, options);
     return options;
 }
 
@@ -136,8 +142,9 @@ TopologyCandidates::Points TopologyCandidates::flooded(std::int64_t from) const 
     return points;
 }
 
-void TopologyCandidates::addWhole(std::int64_t from, const Points& points, bool fill, EditOptions& options) const {
-    EditOption option{editAt(found_.placeOf(from), fill), {}, 0, {}};
+void TopologyCandidates::addWhole(std::int64_t from, const Points& points, TopologyEdit::What what, bool fill,
+                                  EditOptions& options) const {
+    EditOption option{editAt(found_.placeOf(from), what, fill), {}, 0, {}};
     option.plan.fill = fill;
     option.plan.whole = true;
     for (const std::int64_t p : points) {
@@ -159,10 +166,10 @@ EditOptions TopologyCandidates::part(const PersistentClass& c, std::size_t large
     EditOptions options;
     const Points points = flooded(c.birthPoint);
     if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
-    if (points.size() < largest) addWhole(c.birthPoint, points, false, options);
+    if (points.size() < largest) addWhole(c.birthPoint, points, What::part, false, options);
     if (c.deathPoint == PersistentClass::kNever) return options;
-    addDecider(c.deathPoint, true, -2, options);
-    addPlug(c.deathPoint, true, -2, options);
+    addDecider(c.deathPoint, What::part, true, options);
+    addPlug(c.deathPoint, What::part, true, options);
     return options;
 }
 
@@ -171,10 +178,10 @@ EditOptions TopologyCandidates::cavity(const PersistentClass& c) const {
     if (c.deathPoint != PersistentClass::kNever) {
         const Points points = flooded(c.deathPoint);
         if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
-        addWhole(c.deathPoint, points, true, options);
+        addWhole(c.deathPoint, points, What::cavity, true, options);
     }
-    addDecider(c.birthPoint, false, -2, options);
-    addPlug(c.birthPoint, false, -2, options);
+    addDecider(c.birthPoint, What::cavity, false, options);
+    addPlug(c.birthPoint, What::cavity, false, options);
     return options;
 }
 
@@ -182,14 +189,14 @@ std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::si
     std::vector<PersistentClass> wanted;
     for (const PersistentClass& c : classes_)
         if (c.dimension == static_cast<int>(what)) wanted.push_back(c);
-    const std::size_t largest = what == TopologyEdit::What::part ? largestPart() : 0;
+    const std::size_t largest = what == What::part ? largestPart() : 0;
     std::vector<EditOptions> all(wanted.size());
     tbb::parallel_for(std::size_t(0), wanted.size(), [&](std::size_t i) {
         progress_.check();
-        all[i] = what == TopologyEdit::What::part     ? part(wanted[i], largest)
-                 : what == TopologyEdit::What::handle ? handle(wanted[i])
+        all[i] = what == What::part     ? part(wanted[i], largest)
+                 : what == What::handle ? handle(wanted[i])
                                                       : cavity(wanted[i]);
-        for (EditOption& option : all[i]) option.edit.what = what;
+        std::erase_if(all[i], [&](const EditOption& option) { return useless_.count(keyOf(option)) != 0; });
         std::stable_sort(all[i].begin(), all[i].end(), isEstimatedLess);
     });
     std::erase_if(all, [](const EditOptions& options) { return options.empty(); });

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct EditOption {
     double estimate = 0;            // of the volume, in lattice cells
     std::optional<int> euler = {};  // by which the mesh's Euler number changes then, where that is known
 };
+// Tells options apart.
+using OptionKey = std::array<double, 6>;
+inline OptionKey keyOf(const EditOption& option) {
+    const TopologyEdit& edit = option.edit;
+    return {double(edit.kind), double(edit.what), edit.at[0], edit.at[1], edit.at[2], option.estimate};
+}
 // All ways to get rid of the same thing, the one with the smallest estimate first.
 using EditOptions = std::vector<EditOption>;
 
@@ -28,8 +35,8 @@ class PlugMemo {
     using Plug = std::vector<openvdb::Coord>;
     // make() gives the plug of a start where none is known.
     template <class Make>
-    Plug at(const openvdb::Coord& start, bool fill, const Make& make) {
-        const std::tuple key(start, fill);
+    Plug at(const openvdb::Coord& start, bool fill, int radius, const Make& make) {
+        const std::tuple key(start, fill, radius);
         {
             const std::lock_guard lock(mutex_);
             if (const auto found = plugs_.find(key); found != plugs_.end()) return found->second;
@@ -45,16 +52,17 @@ class PlugMemo {
 
   private:
     std::mutex mutex_;
-    std::map<std::tuple<openvdb::Coord, bool>, Plug> plugs_;
+    std::map<std::tuple<openvdb::Coord, bool, int>, Plug> plugs_;
 };
 
 class TopologyCandidates {
   public:
     // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left
     // out. last: the value of F up to which holes, gaps and cavities are followed.
-    // memo: of the same field and refinement.
+    // memo: of the same field and refinement. useless: options that are no longer offered; a plug that is one of them
+    // is grown again with a wider radius.
     TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last, PlugMemo& memo,
-                       const Progress& progress);
+                       const std::set<OptionKey>& useless, const Progress& progress);
 
     // By least estimate. Up to `most` things; the largest part is not among them.
     std::vector<EditOptions> of(TopologyEdit::What what, std::size_t most) const;
@@ -67,14 +75,16 @@ class TopologyCandidates {
     EditOptions cavity(const PersistentClass& c) const;
     Points flooded(std::int64_t from) const;
     std::size_t largestPart() const;
-    void addPlug(std::int64_t at, bool fill, int euler, EditOptions& options) const;
-    void addWhole(std::int64_t from, const Points& points, bool fill, EditOptions& options) const;
-    void addDecider(std::int64_t at, bool fill, int euler, EditOptions& options) const;
+    void addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const;
+    void addWhole(std::int64_t from, const Points& points, TopologyEdit::What what, bool fill,
+                  EditOptions& options) const;
+    void addDecider(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const;
     std::vector<openvdb::Coord> anchors(std::int64_t at, bool fill) const;
-    TopologyEdit editAt(const openvdb::Vec3d& place, bool fill) const;
+    TopologyEdit editAt(const openvdb::Vec3d& place, TopologyEdit::What what, bool fill) const;
 
     const BSplineField& field_;
     PlugMemo& memo_;
+    const std::set<OptionKey>& useless_;
     const Progress& progress_;
     int refine_;
     double smallest_;        // in lattice cells of the mesh
