@@ -50,13 +50,13 @@ struct Tried {
 // How an option is tried: gently first.
 struct Manner {
     double margin;
-    bool faces;
+    bool thin;
 };
-constexpr Manner kManners[] = {{0.25, true}, {0.5, false}, {1.0, true}};
+constexpr Manner kManners[] = {{0.25, true}, {0.25, false}, {1.0, false}};
 
 // Options are tried while their estimate is below this multiple of the cheapest one's that works.
 constexpr double kWorthTrying = 4;
-// Of K: how deep holes may be that are filled.
+// Of K: the depth of holes up to which they are looked for first.
 constexpr double kDeepest = 0.95;
 // More are tried than are too many: some do not work, some touch each other.
 constexpr std::size_t kSpare = 16;
@@ -88,13 +88,14 @@ class Limiter {
         return now - std::min(now, limitOf(limits_, what).value_or(now));
     }
 
-    // -> whether something was changed.
+    // -> whether something was changed. Holes, gaps and cavities that are so deep that the field is cut off in their
+    // middle are looked for last: to follow F so far takes several times as long.
     bool round() {
-        // A cavity's deepest point may lie where the field is cut off; holes and gaps as deep as that are too wide.
-        const double last = tooMany(What::cavity) > 0 ? 2 * field_.K : kDeepest * field_.K;
-        const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, useless_, progress_);
-        for (const What what : kOrder)
-            if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
+        for (const double last : {kDeepest * field_.K, 2 * field_.K}) {
+            const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, useless_, progress_);
+            for (const What what : kOrder)
+                if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
+        }
         return false;
     }
     bool roundOf(What what, const TopologyCandidates& candidates) {
@@ -171,7 +172,7 @@ class Limiter {
         for (const Manner& manner : kManners) {
             EditPlan plan = option.plan;
             plan.margin = manner.margin;
-            plan.faces = manner.faces;
+            plan.thin = manner.thin;
             LocalEdit change = tryEdit(field_, refine_, plan);
             if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
             TopologyEdit edit = option.edit;

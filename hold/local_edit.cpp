@@ -141,13 +141,22 @@ class Trial {
         }
     }
 
+    bool mustKeep(const Coord& c) const {
+        if (isPlanned(c)) return false;
+        if (plan_.thin || insideAfter(c) == plan_.fill) return true;
+        const CoordBBox near(c.offsetBy(-1), c.offsetBy(1));
+        for (auto at = near.begin(); at; ++at)
+            if (isPlanned(*at)) return false;
+        return true;
+    }
+
     std::vector<FieldRow> rows() {
         foresee();
         std::vector<FieldRow> rows;
         for (const Vec3d& at : places_) rows.push_back(rowOf(at, plan_.fill, plan_.margin * step_));
         const CoordBBox box = rowBox();
         for (auto at = box.begin(); at; ++at) {
-            if (!isPlanned(*at)) rows.push_back(keptSign((*at).asVec3d() / refine_, lattice_.at(*at)));
+            if (mustKeep(*at)) rows.push_back(keptSign((*at).asVec3d() / refine_, lattice_.at(*at)));
             addCell(*at, rows);
         }
         return rows;
@@ -169,7 +178,7 @@ class Trial {
             pattern |= static_cast<unsigned>(insideAfter(corner)) << c;
             beside = beside || isPlanned(corner);
         }
-        if (cellTable().isPlain(pattern) || (beside && !plan_.faces)) return;
+        if (cellTable().isPlain(pattern) || (beside && !plan_.thin)) return;
         const Vec3d middle = low.asVec3d() + Vec3d(0.5);
         keep(middle, rows);
         for (int a = 0; a < 3; ++a) {

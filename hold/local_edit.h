@@ -15,7 +15,9 @@ struct EditPlan {
     std::vector<openvdb::Coord> points;  // lattice points of the mesh: index space times refine
     std::vector<openvdb::Vec3d> places;  // and places between them, index space: where faces are decided
     double margin = 0.25;  // how far |F| is beyond 0 there, in mean differences of F over crossed lattice edges
-    bool faces = true;     // faces and cells beside the points are held to F's sign, too
+    // Points and places beside the plan's keep their sign. Else those may change that were on the side of the plan's
+    // own: a plug or a cut may become thicker, which a lattice finer than the control points often needs.
+    bool thin = true;
     bool whole = false;    // the points are all of a part or cavity: their control points start beyond 0
 };
 

@@ -17,7 +17,7 @@ using openvdb::Coord;
 // cube's own, lattice points have even ones.
 class Grower {
   public:
-    Grower(const BSplineField& fine, const Coord& at, bool fill, int radius)
+    Grower(const BSplineField& fine, const Coord& at, bool fill, float height, int radius)
         : fill_(fill),
           radius_(2 * radius),
           low_(at.offsetBy(-radius - 2)),
@@ -26,6 +26,7 @@ class Grower {
         at_ = values_.index(2 * (radius + 2), 2 * (radius + 2), 2 * (radius + 2));
         for (int n = 0; n < 27; ++n)
             near_[n] = (n / 9 - 1) * signs_.stride(0) + (n / 3 % 3 - 1) * signs_.stride(1) + n % 3 - 1;
+        height_ = std::max(height, this->height(at_));
         orderAround();
     }
 
@@ -51,7 +52,7 @@ class Grower {
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     }
     bool mayGrow(std::int64_t i) const {
-        return !isX(i) && i != at_ && height(i) <= height(at_) && squared(i) <= radius_ * radius_;
+        return !isX(i) && i != at_ && height(i) <= height_ && squared(i) <= radius_ * radius_;
     }
     Neighbours neighboursOf(std::int64_t i) const {
         // Simple points are the same for a set and its complement, the ways of joining changed with them.
@@ -153,6 +154,7 @@ class Grower {
     LatticeFunction values_;
     DecidedSigns signs_;
     std::int64_t at_ = 0;
+    float height_ = 0;  // up to which X grows
     std::array<std::int64_t, 27> near_{};
     std::array<int, 26> around_{};
     std::vector<std::int64_t> grown_;
@@ -161,8 +163,8 @@ class Grower {
 
 }  // namespace
 
-std::vector<Coord> leastPlug(const BSplineField& fine, const Coord& at, bool fill, int radius) {
-    return Grower(fine, at, fill, radius).run();
+std::vector<Coord> leastPlug(const BSplineField& fine, const Coord& at, bool fill, float height, int radius) {
+    return Grower(fine, at, fill, height, radius).run();
 }
 
 }  // namespace isowave

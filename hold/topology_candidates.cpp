@@ -68,14 +68,15 @@ std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const
 }
 
 void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
-    constexpr std::size_t kMostAnchors = 3;
+    constexpr std::size_t kMostAnchors = 4;
+    const float height = std::abs(found_.function.values[at]);
     std::size_t left = kMostAnchors;
     for (const Coord& start : anchors(at, fill)) {
         for (const int radius : kRadii) {
             EditOption option{editAt(start.asVec3d() / refine_, what, fill), {}, 0, eulerOf(what)};
             option.plan.fill = fill;
             option.plan.points =
-                memo_.at(start, fill, radius, [&] { return leastPlug(fine_, start, fill, radius); });
+                memo_.at(start, fill, height, radius, [&] { return leastPlug(fine_, start, fill, height, radius); });
             option.estimate = double(option.plan.points.size());
             if (option.plan.points.empty() || useless_.count(keyOf(option))) continue;
             options.push_back(std::move(option));

@@ -35,8 +35,8 @@ class PlugMemo {
     using Plug = std::vector<openvdb::Coord>;
     // make() gives the plug of a start where none is known.
     template <class Make>
-    Plug at(const openvdb::Coord& start, bool fill, int radius, const Make& make) {
-        const std::tuple key(start, fill, radius);
+    Plug at(const openvdb::Coord& start, bool fill, float height, int radius, const Make& make) {
+        const std::tuple key(start, fill, height, radius);
         {
             const std::lock_guard lock(mutex_);
             if (const auto found = plugs_.find(key); found != plugs_.end()) return found->second;
@@ -52,7 +52,7 @@ class PlugMemo {
 
   private:
     std::mutex mutex_;
-    std::map<std::tuple<openvdb::Coord, bool, int>, Plug> plugs_;
+    std::map<std::tuple<openvdb::Coord, bool, float, int>, Plug> plugs_;
 };
 
 class TopologyCandidates {
