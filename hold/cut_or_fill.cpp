@@ -50,9 +50,9 @@ struct Tried {
 // How an option is tried: gently first.
 struct Manner {
     double margin;
-    bool thin;
+    double thicker;  // control points
 };
-constexpr Manner kManners[] = {{0.25, true}, {0.25, false}, {1.0, false}};
+constexpr Manner kManners[] = {{0.25, 0}, {0.25, 1}, {1.0, 1}};
 
 // Options are tried while their estimate is below this multiple of the cheapest one's that works.
 constexpr double kWorthTrying = 4;
@@ -172,7 +172,7 @@ class Limiter {
         for (const Manner& manner : kManners) {
             EditPlan plan = option.plan;
             plan.margin = manner.margin;
-            plan.thin = manner.thin;
+            plan.thicker = static_cast<int>(manner.thicker * refine_);
             LocalEdit change = tryEdit(field_, refine_, plan);
             if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
             TopologyEdit edit = option.edit;

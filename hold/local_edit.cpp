@@ -133,7 +133,7 @@ class Trial {
     // Signs to come: bit 0 inside, bit 1 of the plan.
     void foresee() {
         planned_ = rowBox();
-        planned_.expand(1);
+        planned_.expand(std::max(1, plan_.thicker));
         after_.reserve(planned_.volume());
         for (auto at = planned_.begin(); at; ++at) {
             const bool wanted = isWanted(*at);
@@ -143,8 +143,8 @@ class Trial {
 
     bool mustKeep(const Coord& c) const {
         if (isPlanned(c)) return false;
-        if (plan_.thin || insideAfter(c) == plan_.fill) return true;
-        const CoordBBox near(c.offsetBy(-1), c.offsetBy(1));
+        if (plan_.thicker == 0 || insideAfter(c) == plan_.fill) return true;
+        const CoordBBox near(c.offsetBy(-plan_.thicker), c.offsetBy(plan_.thicker));
         for (auto at = near.begin(); at; ++at)
             if (isPlanned(*at)) return false;
         return true;
@@ -178,7 +178,7 @@ class Trial {
             pattern |= static_cast<unsigned>(insideAfter(corner)) << c;
             beside = beside || isPlanned(corner);
         }
-        if (cellTable().isPlain(pattern) || (beside && !plan_.thin)) return;
+        if (cellTable().isPlain(pattern) || (beside && plan_.thicker > 0)) return;
         const Vec3d middle = low.asVec3d() + Vec3d(0.5);
         keep(middle, rows);
         for (int a = 0; a < 3; ++a) {

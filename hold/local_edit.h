@@ -15,9 +15,9 @@ struct EditPlan {
     std::vector<openvdb::Coord> points;  // lattice points of the mesh: index space times refine
     std::vector<openvdb::Vec3d> places;  // and places between them, index space: where faces are decided
     double margin = 0.25;  // how far |F| is beyond 0 there, in mean differences of F over crossed lattice edges
-    // Points and places beside the plan's keep their sign. Else those may change that were on the side of the plan's
-    // own: a plug or a cut may become thicker, which a lattice finer than the control points often needs.
-    bool thin = true;
+    // Lattice points this near the plan's may change with them: a plug or a cut may become thicker, which a lattice
+    // finer than the control points often needs. All others keep their sign.
+    int thicker = 0;
     bool whole = false;    // the points are all of a part or cavity: their control points start beyond 0
 };
 
