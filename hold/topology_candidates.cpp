@@ -26,6 +26,29 @@ int parityOf(const Coord& c) { return (c[0] & 1) + (c[1] & 1) + (c[2] & 1); }
 // One handle less, or one part or cavity joined to another.
 int eulerOf(What what) { return what == What::handle ? 2 : -2; }
 
+Coord scaled(const Coord& c, int by) { return {c[0] * by, c[1] * by, c[2] * by}; }
+
+// Lattice points `refine` times as dense that lie between points of a plug on all sides.
+std::vector<Coord> refined(const std::vector<Coord>& plug, int refine) {
+    const auto has = [&](const Coord& c) { return std::binary_search(plug.begin(), plug.end(), c); };
+    const auto isBetween = [&](const Coord& fine) {
+        const Vec3d at = fine.asVec3d() / refine;
+        const openvdb::CoordBBox corners(Coord::floor(at), Coord::ceil(at));
+        for (auto c = corners.begin(); c; ++c)
+            if (!has(*c)) return false;
+        return true;
+    };
+    std::vector<Coord> points;
+    for (const Coord& p : plug) {
+        const Coord first(p[0] * refine, p[1] * refine, p[2] * refine);
+        const openvdb::CoordBBox ahead(first, first.offsetBy(refine - 1));
+        for (auto fine = ahead.begin(); fine; ++fine)
+            if (isBetween(*fine)) points.push_back(*fine);
+    }
+    std::sort(points.begin(), points.end());
+    return points;
+}
+
 bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estimate < b.estimate; }
 
 }  // namespace
@@ -67,23 +90,39 @@ std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const
     return result;
 }
 
+// The first plug that is not known to be useless, with growing radius.
+void TopologyCandidates::addPlugFrom(const PlugStart& start, TopologyEdit::What what, bool fill,
+                                     EditOptions& options) const {
+    const int coarser = start.onControlPoints ? refine_ : 1;
+    for (const int radius : kRadii) {
+        if (radius / coarser < kRadii[0]) continue;
+        EditOption option{editAt(start.at.asVec3d() * coarser / refine_, what, fill), {}, 0, eulerOf(what)};
+        option.plan.fill = fill;
+        option.plan.points =
+            memo_.at({scaled(start.at, coarser), fill, start.height, start.onControlPoints ? -radius : radius}, [&] {
+                if (!start.onControlPoints) return leastPlug(fine_, start.at, fill, start.height, radius);
+                return refined(leastPlug(field_, start.at, fill, start.height, radius / coarser), refine_);
+            });
+        option.estimate = double(option.plan.points.size());
+        if (option.plan.points.empty() || useless_.count(keyOf(option))) continue;
+        options.push_back(std::move(option));
+        return;
+    }
+}
+
+// About the saddle on the mesh's lattice; and where that is finer than the control points, on theirs: thin sheets
+// between them may be more than the spline can bend to.
 void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
     constexpr std::size_t kMostAnchors = 4;
     const float height = std::abs(found_.function.values[at]);
-    std::size_t left = kMostAnchors;
-    for (const Coord& start : anchors(at, fill)) {
-        for (const int radius : kRadii) {
-            EditOption option{editAt(start.asVec3d() / refine_, what, fill), {}, 0, eulerOf(what)};
-            option.plan.fill = fill;
-            option.plan.points =
-                memo_.at(start, fill, height, radius, [&] { return leastPlug(fine_, start, fill, height, radius); });
-            option.estimate = double(option.plan.points.size());
-            if (option.plan.points.empty() || useless_.count(keyOf(option))) continue;
-            options.push_back(std::move(option));
-            break;
-        }
-        if (--left == 0) return;
-    }
+    const std::vector<Coord> starts = anchors(at, fill);
+    for (std::size_t i = 0; i < std::min(starts.size(), kMostAnchors); ++i)
+        addPlugFrom({starts[i], height, false}, what, fill, options);
+    if (refine_ == 1) return;
+    const Vec3d place = found_.placeOf(at);
+    const openvdb::CoordBBox corners(Coord::floor(place), Coord::ceil(place));
+    for (auto c = corners.begin(); c; ++c)
+        if ((evaluate(field_, (*c).asVec3d()) < 0) != fill) addPlugFrom({*c, height, true}, what, fill, options);
 }
 
 // Where the field is asked about a face or a cell its answer there is all that need change.

@@ -33,10 +33,11 @@ using EditOptions = std::vector<EditOption>;
 class PlugMemo {
   public:
     using Plug = std::vector<openvdb::Coord>;
-    // make() gives the plug of a start where none is known.
+    // The start on the mesh's lattice, whether to fill, the height, the radius (< 0: on that of the control points).
+    using Key = std::tuple<openvdb::Coord, bool, float, int>;
+    // make() gives the plug where none is known.
     template <class Make>
-    Plug at(const openvdb::Coord& start, bool fill, float height, int radius, const Make& make) {
-        const std::tuple key(start, fill, height, radius);
+    Plug at(const Key& key, const Make& make) {
         {
             const std::lock_guard lock(mutex_);
             if (const auto found = plugs_.find(key); found != plugs_.end()) return found->second;
@@ -52,7 +53,7 @@ class PlugMemo {
 
   private:
     std::mutex mutex_;
-    std::map<std::tuple<openvdb::Coord, bool, float, int>, Plug> plugs_;
+    std::map<Key, Plug> plugs_;
 };
 
 class TopologyCandidates {
@@ -75,6 +76,12 @@ class TopologyCandidates {
     EditOptions cavity(const PersistentClass& c) const;
     Points flooded(std::int64_t from) const;
     std::size_t largestPart() const;
+    struct PlugStart {
+        openvdb::Coord at;  // of the lattice of the mesh, or of the control points
+        float height;
+        bool onControlPoints;
+    };
+    void addPlugFrom(const PlugStart& start, TopologyEdit::What what, bool fill, EditOptions& options) const;
     void addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const;
     void addWhole(std::int64_t from, const Points& points, TopologyEdit::What what, bool fill,
                   EditOptions& options) const;
