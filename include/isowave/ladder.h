@@ -50,10 +50,12 @@ struct LevelOptions {
     bool refit = false;           // fit the field of a level once more to level 0's surface
     bool preserveVolume = false;  // choose the iso-value at which a level has the volume of level 0
     bool protectThin = false;     // choose the iso-value at which a level keeps what is thin; or refine more
-    bool keepSpecks = false;      // components smaller than a node stay
-    bool features = false;        // measure parts, holes and cavities of level 0 and tell what became of them
-    int relax = 0;                // rounds of sliding vertices along the surface
-    bool deviation = false;       // measure triangles against the zero set
+    // At most so many handles (summed over components) and parts, by cuts and fills of the level's field.
+    std::optional<std::int64_t> maxGenus = {}, maxParts = {};
+    bool keepSpecks = false;  // components smaller than a node stay
+    bool features = false;    // measure parts, holes and cavities of level 0 and tell what became of them
+    int relax = 0;            // rounds of sliding vertices along the surface
+    bool deviation = false;   // measure triangles against the zero set
 };
 
 // Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
@@ -102,6 +104,16 @@ struct SamplingReport {
     std::optional<double> thinKept;
 };
 
+// A cut or a fill that made a level's topology simpler: a hole was filled or its ring cut, a part removed or joined to
+// another, a cavity filled or opened.
+enum class SolidFeature { part, handle, cavity };
+struct LevelEdit {
+    bool fill = false;
+    SolidFeature what = SolidFeature::handle;  // of which there is one less
+    Point at{};                                // world
+    double volume = 0;                         // world units^3 that the solid gained
+};
+
 struct LevelReport {
     int step = 0;
     std::optional<int> level;         // where step is 3 level
@@ -124,7 +136,9 @@ struct LevelReport {
     std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
     std::optional<FeatureReport> features;
 
-    SolidCounts change;  // from the level before in the report, or from level 0
+    std::vector<LevelEdit> edits;             // that limits on the topology asked for
+    std::optional<std::string> limitsMissed;  // by how much, where they could not be met
+    SolidCounts change;                       // from the level before in the report, or from level 0
     std::optional<SamplingReport> sampling;
     // World units; from samples on the level, and on some of level 0's triangles. 0 for level 0 itself.
     std::optional<double> rmsToLevel0, maxToLevel0, rmsFromLevel0, maxFromLevel0;
