@@ -9,6 +9,7 @@
 
 #include "hold/hold.h"
 #include "isowave/error.h"
+#include "lod/limit_level.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
@@ -201,7 +202,13 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
 }
 
 LevelMesh LevelMesher::make(int step, const BSplineField& given) {
-    const BSplineField field = fieldToDraw(step, given);
+    LevelMesh level = chosen(step, fieldToDraw(step, given));
+    limit(level);
+    before_ = countsOf(level.report.topology);
+    return level;
+}
+
+LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
     int refine = refineFor(step, field);
     LevelMesh level = madeAt(refine, step, field);
     if (options_.hold == Holding::shift) return shifted(std::move(level), step, field);
@@ -212,6 +219,24 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
         level = std::move(finer);
     }
     return level;
+}
+
+// From level to level nothing becomes more, and nothing is more than was asked for.
+void LevelMesher::limit(LevelMesh& level) {
+    LevelReport& report = level.report;
+    const bool falls = options_.hold == Holding::local && report.step != 0;
+    const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
+    if (openBorder_ || report.vanished() || limits.allow(countsOf(report.topology))) return;
+    if (level.iso != 0) {
+        report.limitsMissed = "cuts and fills are made where the iso-value is 0";
+        return;
+    }
+    {
+        const StageClock::Scope scope(clock_, "cut and fill");
+        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
+                   progress_);
+    }
+    if (!report.edits.empty()) drawAll(level, {});
 }
 
 LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& field) {
@@ -311,7 +336,6 @@ void LevelMesher::hold(LevelMesh& level) const {
 }
 
 LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
-    const double smallest = smallestAt(step, field);
     LevelMesh level;
     LevelReport& report = level.report;
     level.field = field;
@@ -322,6 +346,13 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
     std::optional<std::vector<double>> thin;
     if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, refine);
     level.iso = isoFor(level, thin);
+    drawAll(level, thin);
+    return level;
+}
+
+void LevelMesher::drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin) {
+    LevelReport& report = level.report;
+    const double smallest = smallestAt(report.step, level.field);
     const SpeckRemoval removal = draw(level, smallest);
     report.specksRemoved = removal.specks;
     report.speckVolume = removal.speckVolume;
@@ -333,7 +364,6 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
         report.thinKeptAtIso0 = shareInside(*thin, 0);
     }
     putFeatures(level, removal);
-    return level;
 }
 
 }  // namespace lod

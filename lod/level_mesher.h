@@ -58,6 +58,9 @@ class LevelMesher {
     int refineFor(int step, const BSplineField& field) const;
     int refineOfLevel0(const BSplineField& field) const;
     LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
+    LevelMesh chosen(int step, const BSplineField& field);
+    void limit(LevelMesh& level);
+    void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin);
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
@@ -77,6 +80,7 @@ class LevelMesher {
     std::optional<Border> openBorder_;
     bool wantsThin_;
     InputTruth truth_;
+    std::optional<SolidCounts> before_;  // of the step made before
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

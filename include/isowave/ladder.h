@@ -59,7 +59,9 @@ struct LevelOptions {
     bool compact = false;  // collapse what refine > 1 gives down to the triangles of refine = 1
     bool refit = false;    // fit the field of a level once more to level 0's surface
     bool preserveVolume =
-        false;                // choose the iso-value at which a level has the input's volume, else level 0's
+        false;  // choose the iso-value at which a level has the input's volume, else level 0's
+    // At most so many handles (summed over components) and parts, by cuts and fills of the level's field.
+    std::optional<std::int64_t> maxGenus = {}, maxParts = {};
     bool keepSpecks = false;  // components smaller than a node stay
     bool features = false;    // measure parts, holes and cavities of level 0 and tell what became of them
     int relax = 0;            // rounds of sliding vertices along the surface
@@ -73,7 +75,8 @@ struct BudgetOptions {
     // One mesh each: nowhere farther than this from level 0, world units.
     std::vector<double> tolerances = {};
     // Of all of them; where only these are given there is one mesh, that of the finest step that they allow.
-    std::optional<std::int64_t> maxGenus = {};  // summed over components
+    // Handles, summed over components; LevelOptions::maxGenus brings every step down to it.
+    std::optional<std::int64_t> maxGenus = {};
     // World units^3: every component, a cavity too, has at least that.
     std::optional<double> minComponent = {};
 
@@ -122,6 +125,16 @@ struct HoldSummary {
     std::int64_t unmet = 0;          // conditions that could not be met
 };
 
+// A cut or a fill that made a level's topology simpler: a hole was filled or its ring cut, a part removed or joined to
+// another, a cavity filled or opened.
+enum class SolidFeature { part, handle, cavity };
+struct LevelEdit {
+    bool fill = false;
+    SolidFeature what = SolidFeature::handle;  // of which there is one less
+    Point at{};                                // world
+    double volume = 0;                         // world units^3 that the solid gained
+};
+
 struct LevelReport {
     int step = 0;
     std::optional<int> level;         // where step is 3 level
@@ -146,7 +159,9 @@ struct LevelReport {
     std::optional<HoldSummary> hold;  // Holding::local: what it took; nothing where nothing is thin
     std::optional<FeatureReport> features;
 
-    SolidCounts change;  // from the level before in the report, or from level 0
+    std::vector<LevelEdit> edits;             // that limits on the topology asked for
+    std::optional<std::string> limitsMissed;  // by how much, where they could not be met
+    SolidCounts change;                       // from the level before in the report, or from level 0
     std::optional<SamplingReport> sampling;
     // World units; from samples on the level, and on some of level 0's triangles. 0 for level 0 itself.
     std::optional<double> rmsToLevel0, maxToLevel0, rmsFromLevel0, maxFromLevel0;

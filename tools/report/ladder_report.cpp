@@ -21,6 +21,22 @@ Json changeJson(const SolidCounts& change) {
     return {{"parts", change.parts}, {"handles", change.handles}, {"cavities", change.cavities}};
 }
 
+const char* nameOf(SolidFeature what) {
+    return what == SolidFeature::part ? "part" : what == SolidFeature::handle ? "handle" : "cavity";
+}
+
+// The cuts or the fills among them.
+Json editsJson(const std::vector<LevelEdit>& edits, bool fills) {
+    double volume = 0;
+    Json places = Json::array();
+    for (const LevelEdit& edit : edits) {
+        if (edit.fill != fills) continue;
+        volume += edit.volume;
+        places.push_back({{"what", nameOf(edit.what)}, {"at", edit.at}, {"volume", edit.volume}});
+    }
+    return {{"count", places.size()}, {"volume", volume}, {"places", places}};
+}
+
 Json fateJson(const FeatureFate& f) {
     return {{"survived", f.survived},
             {"vanished", f.vanished},
@@ -72,6 +88,9 @@ void putMesh(Json& json, const LevelReport& level) {
     json["thin_kept_at_iso_0"] = orNull(level.thinKeptAtIso0);
     json["hold"] = holdJson(level.hold);
     json["features"] = featuresJson(level.features);
+    json["cuts"] = editsJson(level.edits, false);
+    json["fills"] = editsJson(level.edits, true);
+    json["limits_missed"] = level.limitsMissed ? Json(*level.limitsMissed) : Json(nullptr);
     json["change"] = changeJson(level.change);
     json["sampling"] = samplingJson(level.sampling);
 }

@@ -133,9 +133,14 @@ void Lod::declareBudgets() {
     options_.value("--tolerance", "D,D,...", "",
                    "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
                    [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value("--max-genus", "N", "",
-                   "budgets: only from steps with at most N handles; alone: the finest such step",
-                   [this](const std::string& v) { budgets_.maxGenus = integer(v, 0, kHuge); });
+    options_.value(
+        "--max-genus", "N", "",
+        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
+        [this](const std::string& v) { levels_.maxGenus = integer(v, 0, kHuge); });
+    options_.value(
+        "--max-parts", "N", "",
+        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
+        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
     options_.value("--min-component", "VOLUME", "",
                    "budgets: only from steps without components smaller than that (world units cubed)",
                    [this](const std::string& v) { budgets_.minComponent = positive(v); });
@@ -150,6 +155,7 @@ void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
 int Lod::run(Console& console) {
     OutputFolder out(*output_, Inputs(arguments));
     const MeshFormat format = format_.value_or(MeshFormat::ply);
+    if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
     checkRanges(levels_);
     const MeshNames names(out.name(), format, levels_, budgets_);

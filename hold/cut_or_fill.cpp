@@ -1,0 +1,282 @@
+// limitTopology = rounds of
+//   find    what could be cut or filled (topology_candidates.h)
+//   try     each on its surroundings alone: Euler number and volume of the mesh there (local_edit.h)
+//   choose  the cheapest that do not touch each other, as many as are too many
+//   apply   all together and count the mesh; where it is not as it should be, each half on its own
+#include "hold/cut_or_fill.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "hold/topology_candidates.h"
+#include "polygonize/specks.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using What = TopologyEdit::What;
+
+constexpr What kOrder[] = {What::part, What::cavity, What::handle};
+
+std::int64_t countOf(const SolidCounts& counts, What what) {
+    return what == What::part ? counts.parts : what == What::handle ? counts.handles : counts.cavities;
+}
+std::optional<std::int64_t> limitOf(const SolidLimits& limits, What what) {
+    return what == What::part ? limits.parts : what == What::handle ? limits.handles : limits.cavities;
+}
+const char* nameOf(What what) {
+    return what == What::part ? "parts" : what == What::handle ? "handles" : "cavities";
+}
+
+// An option that was tried and does what it should.
+struct Choice {
+    TopologyEdit edit;
+    LocalEdit change;
+    OptionKey key;
+};
+// The cheapest of the options of one thing that do what they should, and those that do not.
+struct Tried {
+    std::optional<Choice> choice;
+    std::vector<OptionKey> useless;
+};
+
+// How an option is tried: gently first.
+struct Manner {
+    double margin;
+    double thicker;  // control points
+};
+constexpr Manner kManners[] = {{0.25, 0}, {0.25, 1}, {1.0, 1}};
+
+// Options are tried while their estimate is below this multiple of the cheapest one's that works.
+constexpr double kWorthTrying = 4;
+// Of K: the depth of holes up to which they are looked for first.
+constexpr double kDeepest = 0.95;
+// More are tried than are too many: some do not work, some touch each other.
+constexpr std::size_t kSpare = 16;
+
+class Limiter {
+  public:
+    Limiter(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+            const Progress& progress)
+        : field_(field), refine_(refine), limits_(limits), smallest_(smallestPart), progress_(progress) {}
+
+    TopologyEdits run() {
+        result_.before = result_.after = count(field_);
+        bool goesOn = !limits_.allow(result_.after);
+        while (goesOn) {
+            progress_("limiting the topology", 0);
+            goesOn = round() && !limits_.allow(result_.after);
+        }
+        result_.met = limits_.allow(result_.after);
+        if (!result_.met) result_.why = why();
+        return result_;
+    }
+
+  private:
+    SolidCounts count(const BSplineField& field) const {
+        return meshedCounts(field, refine_, smallest_, progress_);
+    }
+    std::int64_t tooMany(What what) const {
+        const std::int64_t now = countOf(result_.after, what);
+        return now - std::min(now, limitOf(limits_, what).value_or(now));
+    }
+
+    // -> whether something was changed. Holes, gaps and cavities that are so deep that the field is cut off in their
+    // middle are looked for last: to follow F so far takes several times as long.
+    bool round() {
+        for (const double last : {kDeepest * field_.K, 2 * field_.K}) {
+            const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, useless_, progress_);
+            for (const What what : kOrder)
+                if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
+        }
+        return false;
+    }
+    bool roundOf(What what, const TopologyCandidates& candidates) {
+        const auto need = static_cast<std::size_t>(tooMany(what));
+        const std::size_t before = result_.edits.size();
+        for (std::size_t most = 2 * need + kSpare; result_.edits.size() == before;) {
+            const std::size_t useless = useless_.size();
+            const std::vector<EditOptions> all = candidates.of(what, most);
+            take(chosen(tried(all), need));
+            if (result_.edits.size() > before || useless_.size() > useless) continue;
+            if (all.size() < most) break;
+            most *= kSpare;
+        }
+        return result_.edits.size() > before;
+    }
+
+    // ---- try
+
+    std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) {
+        std::vector<Tried> results(all.size());
+        tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
+            progress_.check();
+            const auto known = known_.find(keysOf(all[i]));
+            results[i] = known == known_.end() ? cheapest(all[i]) : known->second.tried;
+        });
+        std::vector<std::optional<Choice>> choices;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            known_[keysOf(all[i])] = {readBy(all[i]), results[i]};
+            useless_.insert(results[i].useless.begin(), results[i].useless.end());
+            choices.push_back(std::move(results[i].choice));
+        }
+        return choices;
+    }
+    // The control points that trying reads.
+    CoordBBox readBy(const EditOptions& options) const {
+        CoordBBox box;
+        for (const EditOption& option : options) {
+            for (const Coord& c : option.plan.points) {
+                box.expand(Coord::floor(c.asVec3d() / refine_));
+                box.expand(Coord::ceil(c.asVec3d() / refine_));
+            }
+            for (const openvdb::Vec3d& place : option.plan.places) box.expand(Coord::floor(place));
+        }
+        constexpr int kReads = 7;
+        box.expand(kReads);
+        return box;
+    }
+    // What was found out near an edit no longer holds.
+    void forgetAround(const CoordBBox& changed) {
+        std::erase_if(known_, [&](const auto& entry) { return entry.second.reads.hasOverlap(changed); });
+        CoordBBox starts(Coord(changed.min().asVec3i() * refine_), Coord(changed.max().asVec3i() * refine_));
+        starts.expand(kWidestPlug + 2 * refine_ + 2);
+        plugs_.forget(starts);
+        std::erase_if(useless_, [&](const OptionKey& key) {
+            const openvdb::Vec3d at = field_.transform().worldToIndex({key[2], key[3], key[4]});
+            return starts.isInside(Coord::round(at * refine_));
+        });
+    }
+    Tried cheapest(const EditOptions& options) const {
+        Tried tried;
+        std::optional<Choice>& best = tried.choice;
+        double estimate = 0;
+        for (const EditOption& option : options) {
+            if (best && option.estimate > kWorthTrying * estimate) break;
+            auto choice = tryOption(option);
+            if (!choice) tried.useless.push_back(keyOf(option));
+            if (!choice) continue;
+            if (!best) estimate = option.estimate;
+            if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume)) best = std::move(choice);
+        }
+        return tried;
+    }
+    std::optional<Choice> tryOption(const EditOption& option) const {
+        for (const Manner& manner : kManners) {
+            EditPlan plan = option.plan;
+            plan.margin = manner.margin;
+            plan.thicker = static_cast<int>(manner.thicker * refine_);
+            LocalEdit change = tryEdit(field_, refine_, plan);
+            if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
+            TopologyEdit edit = option.edit;
+            edit.volume = change.volume;
+            return Choice{edit, std::move(change), keyOf(option)};
+        }
+        return {};
+    }
+
+    // ---- choose
+
+    // Each edit was made for the control points around it as they are.
+    static bool touch(const LocalEdit& a, const LocalEdit& b) {
+        constexpr int kReads = 4;
+        CoordBBox around = a.box;
+        around.expand(kReads);
+        return around.hasOverlap(b.box);
+    }
+    static std::vector<Choice> chosen(const std::vector<std::optional<Choice>>& all, std::size_t most) {
+        std::vector<const Choice*> order;
+        for (const auto& choice : all)
+            if (choice) order.push_back(&*choice);
+        std::stable_sort(order.begin(), order.end(), [](const Choice* a, const Choice* b) {
+            return std::abs(a->edit.volume) < std::abs(b->edit.volume);
+        });
+        std::vector<Choice> result;
+        for (const Choice* choice : order) {
+            if (result.size() == most) break;
+            if (std::none_of(result.begin(), result.end(),
+                             [&](const Choice& c) { return touch(c.change, choice->change); }))
+                result.push_back(*choice);
+        }
+        return result;
+    }
+
+    // ---- apply
+
+    void take(const std::vector<Choice>& batch) {
+        if (batch.empty()) return;
+        BSplineField changed = field_;
+        changed.controlPoints = field_.controlPoints->deepCopy();
+        changed.shape = field_.shape->deepCopy();
+        for (const Choice& choice : batch) apply(choice.change, changed);
+        const SolidCounts now = count(changed);
+        if (isAsWanted(now, batch)) {
+            field_ = changed;
+            result_.after = now;
+            for (const Choice& choice : batch) {
+                result_.edits.push_back(choice.edit);
+                forgetAround(choice.change.box);
+            }
+        } else if (batch.size() == 1) {
+            useless_.insert(batch.front().key);
+        } else {
+            const auto middle = batch.begin() + static_cast<std::ptrdiff_t>(batch.size() / 2);
+            take({batch.begin(), middle});
+            take({middle, batch.end()});
+        }
+    }
+    bool isAsWanted(const SolidCounts& now, const std::vector<Choice>& batch) const {
+        const auto less = static_cast<std::int64_t>(batch.size());
+        for (const What what : kOrder) {
+            const std::int64_t before = countOf(result_.after, what), after = countOf(now, what);
+            if (what == batch.front().edit.what ? after != before - less : after > before) return false;
+        }
+        return true;
+    }
+
+    static std::vector<OptionKey> keysOf(const EditOptions& options) {
+        std::vector<OptionKey> keys;
+        for (const EditOption& option : options) keys.push_back(keyOf(option));
+        return keys;
+    }
+
+    std::string why() const {
+        std::string text;
+        for (const What what : kOrder)
+            if (tooMany(what) > 0)
+                text += fmt::format("{}{} {} where {} are allowed", text.empty() ? "" : ", ",
+                                    countOf(result_.after, what), nameOf(what), *limitOf(limits_, what));
+        return text + fmt::format(": {} cuts and fills were made, {} others change more than they should",
+                                  result_.edits.size(), useless_.size());
+    }
+
+    BSplineField& field_;
+    int refine_;
+    SolidLimits limits_;
+    double smallest_;
+    const Progress& progress_;
+    std::set<OptionKey> useless_;  // on the whole mesh or on its surroundings alone
+    struct Known {
+        CoordBBox reads;
+        Tried tried;
+    };
+    std::map<std::vector<OptionKey>, Known> known_;
+    PlugMemo plugs_;
+    TopologyEdits result_;
+};
+
+}  // namespace
+
+TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                            const Progress& progress) {
+    return Limiter(field, refine, limits, smallestPart, progress).run();
+}
+
+}  // namespace isowave

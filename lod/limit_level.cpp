@@ -1,0 +1,51 @@
+#include "lod/limit_level.h"
+
+#include <algorithm>
+
+#include "hold/cut_or_fill.h"
+
+namespace isowave::lod {
+namespace {
+
+void lower(std::optional<std::int64_t>& limit, std::int64_t most) {
+    limit = std::min(most, limit.value_or(most));
+}
+
+SolidFeature featureOf(TopologyEdit::What what) {
+    switch (what) {
+        case TopologyEdit::What::part:
+            return SolidFeature::part;
+        case TopologyEdit::What::handle:
+            return SolidFeature::handle;
+        default:
+            return SolidFeature::cavity;
+    }
+}
+
+}  // namespace
+
+SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCounts>& before) {
+    SolidLimits limits{options.maxParts, options.maxGenus, {}};
+    if (before) {
+        lower(limits.parts, before->parts);
+        lower(limits.handles, before->handles);
+        lower(limits.cavities, before->cavities);
+    }
+    return limits;
+}
+
+void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                LevelReport& report, const Progress& progress) {
+    if (!limits.any()) return;
+    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, progress);
+    for (const TopologyEdit& edit : edits.edits)
+        report.edits.push_back({edit.kind == TopologyEdit::Kind::fill,
+                                featureOf(edit.what),
+                                {edit.at[0], edit.at[1], edit.at[2]},
+                                edit.volume});
+    if (edits.met) return;
+    report.limitsMissed = edits.why;
+    progress.say("limits on the topology are missed: " + edits.why);
+}
+
+}  // namespace isowave::lod

@@ -1,0 +1,21 @@
+// A level's field -> the same with no more parts, handles and cavities than were asked for.
+#pragma once
+
+#include <optional>
+
+#include "hold/solid_limits.h"
+#include "isowave/ladder.h"
+#include "volume/field.h"
+
+namespace isowave::lod {
+
+// What the options allow, and no more of anything than `before` has, where that is given: the level before, which a
+// coarser one must not exceed.
+SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCounts>& before = {});
+
+// limitTopology() (hold/cut_or_fill.h) at F = 0; puts edits, and what of the limits is missed, into the report. The field is the level's own
+// copy: the pyramid stays as it is. Without limits nothing is counted.
+void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                LevelReport& report, const Progress& progress);
+
+}  // namespace isowave::lod

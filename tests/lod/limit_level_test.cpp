@@ -1,0 +1,46 @@
+#include "lod/limit_level.h"
+
+#include <gtest/gtest.h>
+
+#include "polygonize/fields.h"
+
+namespace isowave::lod {
+namespace {
+
+using testing::fieldFromDistance;
+using testing::torus;
+
+TEST(LimitLevel, TakesTheLowerOfOptionAndLevelBefore) {
+    LevelOptions options;
+    options.maxGenus = 3;
+    EXPECT_FALSE(limitsOf(options).parts);
+    EXPECT_EQ(limitsOf(options).handles, 3);
+    const SolidLimits limits = limitsOf(options, SolidCounts{2, 1, 0});
+    EXPECT_EQ(limits.parts, 2);
+    EXPECT_EQ(limits.handles, 1);
+    EXPECT_EQ(limits.cavities, 0);
+    EXPECT_EQ(limitsOf(options, SolidCounts{2, 7, 0}).handles, 3);
+    EXPECT_FALSE(limitsOf({}).any());
+}
+
+TEST(LimitLevel, TellsOfItsEdits) {
+    BSplineField field = fieldFromDistance(16, torus(5, 3.4));
+    LevelReport report;
+    limitLevel(field, 1, {.handles = 0}, 0, report, {});
+    ASSERT_EQ(report.edits.size(), 1u);
+    EXPECT_TRUE(report.edits[0].fill);
+    EXPECT_EQ(report.edits[0].what, SolidFeature::handle);
+    EXPECT_GT(report.edits[0].volume, 0);
+    EXPECT_FALSE(report.limitsMissed);
+}
+
+TEST(LimitLevel, SaysWhatIsMissed) {
+    BSplineField field = fieldFromDistance(16, torus(8, 3));
+    LevelReport report;
+    limitLevel(field, 1, {.parts = 0}, 0, report, {});  // the largest part stays
+    ASSERT_TRUE(report.limitsMissed);
+    EXPECT_NE(report.limitsMissed->find("1 parts where 0 are allowed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isowave::lod
