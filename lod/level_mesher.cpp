@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "isowave/error.h"
+#include "lod/limit_level.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
@@ -238,6 +239,8 @@ LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
     std::optional<std::vector<double>> thin;
     if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, refine);
     level.iso = isoFor(step, field, thin);
+    if (level.iso == 0 && !openBorder_)
+        limitLevel(level.field, refine, limitsOf(options_), smallest, report, progress_);
     const SpeckRemoval removal = draw(level, smallest);
     report.specksRemoved = removal.specks;
     report.speckVolume = removal.speckVolume;

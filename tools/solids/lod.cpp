@@ -133,9 +133,16 @@ void Lod::declareBudgets() {
     options_.value("--tolerance", "D,D,...", "",
                    "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
                    [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value("--max-genus", "N", "",
-                   "budgets: only from steps with at most N handles; alone: the finest such step",
-                   [this](const std::string& v) { budgets_.maxGenus = integer(v, 0, kHuge); });
+    options_.value(
+        "--max-genus", "N", "",
+        "at most N handles: what is more is cut or filled where that changes the least volume; alone, "
+        "without "
+        "--levels or --steps, the finest step only",
+        [this](const std::string& v) { budgets_.maxGenus = levels_.maxGenus = integer(v, 0, kHuge); });
+    options_.value(
+        "--max-parts", "N", "",
+        "levels have at most N parts: the smallest go, or are joined where that changes less volume",
+        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
     options_.value("--min-component", "VOLUME", "",
                    "budgets: only from steps without components smaller than that (world units cubed)",
                    [this](const std::string& v) { budgets_.minComponent = positive(v); });
