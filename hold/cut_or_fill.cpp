@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 
+#include "hold/plug.h"
 #include "hold/topology_candidates.h"
 #include "polygonize/specks.h"
 

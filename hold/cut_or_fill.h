@@ -12,16 +12,10 @@
 #include <vector>
 
 #include "hold/solid_limits.h"
+#include "hold/topology_edit.h"
 #include "isowave/progress.h"
 
 namespace isowave {
-
-struct TopologyEdit {
-    enum class Kind { cut, fill } kind = Kind::cut;
-    enum class What { part, handle, cavity } what = What::handle;  // of which there is one less
-    openvdb::Vec3d at{0.0};  // world: in the middle of the cut or the plug
-    double volume = 0;       // world units^3 that the mesh gains (fills) or loses (cuts, negative)
-};
 
 struct TopologyEdits {
     std::vector<TopologyEdit> edits;  // in the order in which they were made
@@ -47,6 +41,5 @@ struct TopologyEdits {
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress = {});
 
-inline constexpr int kWidestPlug = 12;  // lattice steps of the mesh from the middle
 
 }  // namespace isowave

@@ -8,6 +8,8 @@
 
 namespace isowave {
 
+inline constexpr int kWidestPlug = 12;  // lattice steps of the mesh from the middle: wider ones are not grown
+
 // fine: a field whose lattice a mesh samples. fill: X = { F < 0 } grows; else X = { F >= 0 } does and the solid is cut. About
 // the saddle `at`, which is on the other side: lattice points within `radius` steps of it whose |F| is at most `height`, or that of `at`, go over
 // to X in the order of |F| as long as X keeps its topology, then `at` itself, and then all that can go back again,

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include "hold/cut_or_fill.h"
 #include "hold/local_edit.h"
 #include "hold/mesh_lattice.h"
+#include "hold/topology_edit.h"
 
 namespace isowave {
 

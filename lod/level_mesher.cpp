@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hold/limit_level.h"
 #include "isowave/error.h"
-#include "lod/limit_level.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
