@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 
+#include "hold/plug.h"
 #include "hold/topology_candidates.h"
 #include "polygonize/specks.h"
 
@@ -58,6 +59,8 @@ constexpr Manner kManners[] = {{0.25, 0}, {0.25, 1}, {1.0, 1}};
 constexpr double kWorthTrying = 4;
 // Of K: the depth of holes up to which they are looked for first.
 constexpr double kDeepest = 0.95;
+// Points of decidedLattice(): persistence takes about 1 us each.
+constexpr double kMostAtFirst = 8e6, kMostDecided = 4e7;
 // More are tried than are too many: some do not work, some touch each other.
 constexpr std::size_t kSpare = 16;
 
@@ -89,10 +92,12 @@ class Limiter {
     }
 
     // -> whether something was changed. Holes, gaps and cavities that are so deep that the field is cut off in their
-    // middle are looked for last: to follow F so far takes several times as long.
+    // middle are looked for last, and so is what only a face's decision makes in a large field: that takes several
+    // times as long.
     bool round() {
-        for (const double last : {kDeepest * field_.K, 2 * field_.K}) {
-            const TopologyCandidates candidates(field_, refine_, smallest_, last, plugs_, useless_, progress_);
+        for (const auto& depth : {TopologyCandidates::Depth{kDeepest * field_.K, kMostAtFirst},
+                                  TopologyCandidates::Depth{2 * field_.K, kMostDecided}}) {
+            const TopologyCandidates candidates(field_, refine_, smallest_, depth, plugs_, useless_, progress_);
             for (const What what : kOrder)
                 if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
         }

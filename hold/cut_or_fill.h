@@ -12,16 +12,10 @@
 #include <vector>
 
 #include "hold/solid_limits.h"
+#include "hold/topology_edit.h"
 #include "isowave/progress.h"
 
 namespace isowave {
-
-struct TopologyEdit {
-    enum class Kind { cut, fill } kind = Kind::cut;
-    enum class What { part, handle, cavity } what = What::handle;  // of which there is one less
-    openvdb::Vec3d at{0.0};  // world: in the middle of the cut or the plug
-    double volume = 0;       // world units^3 that the mesh gains (fills) or loses (cuts, negative)
-};
 
 struct TopologyEdits {
     std::vector<TopologyEdit> edits;  // in the order in which they were made
@@ -35,17 +29,17 @@ struct TopologyEdits {
 // (1) `after` is counted on that mesh, and so is every edit: one that does not take away exactly the one thing
 //     it is for, or adds another, is undone.
 // (2) What is not limited does not rise.
-// (3) Signs at lattice points change in plugs, cuts, removed parts and filled cavities only; F changes within 4 control points of
-//     these. Within the limits nothing changes, and the price is that of counting.
+// (3) Signs at lattice points change in and beside plugs, cuts, removed parts and filled cavities only; F changes within 4 control
+//     points of these. Within the limits nothing changes, and the price is that of counting.
 // (4) The same bits for any number of threads.
 // Candidates come from the persistence of F (polygonize/persistence.h): the thinnest place of each ring and wall, the
-// middle of each hole and gap. Holes and rings wider than kWidestPlug lattice steps are left.
+// middle of each hole and gap. Holes and rings wider than kWidestPlug lattice steps are left. Where the mesh's lattice is finer than
+// the control points (refine > 1) the spline cannot bend to every plug: more places fail than at refine 1.
 // The grids are copied before they are changed: others that share them see nothing.
 // REQUIRES: refine is 1, 2 or 4. Throws as polygonize(), Cancelled (the field is then as it was before or
 // between two edits).
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress = {});
 
-inline constexpr int kWidestPlug = 12;  // lattice steps of the mesh from the middle
 
 }  // namespace isowave

@@ -36,7 +36,7 @@ struct MeshLattice {
 double latticePoints(const BSplineField& field, int refine);
 
 // The lattice of polygonize(field, refine): all of it that can be inside, and one layer more.
-// About 20 ns a point. REQUIRES: refine is a power of 2; K outside.
+// REQUIRES: refine is a power of 2; K outside.
 MeshLattice meshLattice(const BSplineField& field, int refine, const Progress& progress = {});
 
 // F at lattice points of a field's control points and halfway between them on each axis: from `low`, `points` lattice

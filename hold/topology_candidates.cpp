@@ -17,8 +17,6 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 using What = TopologyEdit::What;
 
-// Points of the decided lattice up to which classes are found on it (8 us a point near the surface); beyond, on the mesh's own.
-constexpr double kMostDecided = 8e6;
 constexpr int kRadii[] = {3, 6, kWidestPlug};
 
 int parityOf(const Coord& c) { return (c[0] & 1) + (c[1] & 1) + (c[2] & 1); }
@@ -53,14 +51,14 @@ bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estima
 
 }  // namespace
 
-TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last,
+TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth,
                                        PlugMemo& memo, const std::set<OptionKey>& useless, const Progress& progress)
     : field_(field), memo_(memo), useless_(useless), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
-    twice_ = latticePoints(field, 2 * refine) <= kMostDecided;
+    twice_ = latticePoints(field, 2 * refine) <= depth.decided;
     found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
     constexpr float kBelowZero = -std::numeric_limits<float>::denorm_min();
-    classes_ = classesAt(found_.function, kBelowZero, static_cast<float>(last), progress);
+    classes_ = classesAt(found_.function, kBelowZero, static_cast<float>(depth.last), progress);
 }
 
 TopologyEdit TopologyCandidates::editAt(const Vec3d& place, TopologyEdit::What what, bool fill) const {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include "hold/cut_or_fill.h"
 #include "hold/local_edit.h"
 #include "hold/mesh_lattice.h"
+#include "hold/topology_edit.h"
 
 namespace isowave {
 
@@ -58,11 +58,16 @@ class PlugMemo {
 
 class TopologyCandidates {
   public:
+    // How thoroughly to look.
+    struct Depth {
+        double last;     // of F: up to which holes, gaps and cavities are followed
+        double decided;  // points up to which decidedLattice() is used; beyond, the mesh's own with an eighth of them
+    };
     // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left
-    // out. last: the value of F up to which holes, gaps and cavities are followed.
+    // out.
     // memo: of the same field and refinement. useless: options that are no longer offered; a plug that is one of them
     // is grown again with a wider radius.
-    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, double last, PlugMemo& memo,
+    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth, PlugMemo& memo,
                        const std::set<OptionKey>& useless, const Progress& progress);
 
     // By least estimate. Up to `most` things; the largest part is not among them.

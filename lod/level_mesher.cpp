@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "hold/hold.h"
+#include "hold/limit_level.h"
 #include "isowave/error.h"
-#include "lod/limit_level.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
@@ -33,8 +33,9 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;  // of the volume to keep
-constexpr int kFinestRefine = 4;     // that polygonize() takes
+constexpr double kPreserved = 1e-4;      // of the volume to keep
+constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
+constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
     if (options.preserveVolume && options.hold == Holding::shift)
@@ -49,6 +50,12 @@ void checkOptions(const LevelOptions& options, bool openBorder) {
     if (options.preserveVolume && openBorder)
         throw UsageError("--preserve-volume needs a closed surface; leave out --open-border");
     if (options.compact) requireSimplifier("--compact");
+}
+
+std::int64_t excess(const SolidCounts& now, const SolidCounts& before) {
+    const auto more = [](std::int64_t a, std::int64_t b) { return std::max<std::int64_t>(0, a - b); };
+    return more(now.parts, before.parts) + more(now.handles, before.handles) +
+           more(now.cavities, before.cavities);
 }
 
 FeatureFate fateOf(const Survival& s, std::int64_t now) {
@@ -226,7 +233,15 @@ void LevelMesher::limit(LevelMesh& level) {
     LevelReport& report = level.report;
     const bool falls = options_.hold == Holding::local && report.step != 0;
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
-    if (openBorder_ || report.vanished() || limits.allow(countsOf(report.topology))) return;
+    const SolidCounts counts = countsOf(report.topology);
+    if (openBorder_ || report.vanished() || limits.allow(counts)) return;
+    if (falls && !options_.maxGenus && !options_.maxParts && excess(counts, *before_) > kMostEdits) {
+        report.limitsMissed = fmt::format(
+            "{} parts, handles and cavities more than the level before, too many to cut and fill "
+            "unasked; give --max-genus or --max-parts",
+            excess(counts, *before_));
+        return;
+    }
     if (level.iso != 0) {
         report.limitsMissed = "cuts and fills are made where the iso-value is 0";
         return;

@@ -84,8 +84,8 @@ TEST(Levels, SayWhereTheVolumeIsOutOfReach) {
 }
 
 TEST(Levels, KeepThinWallsWhenAsked) {
-    const auto torn = levelsOf(wallSolid(), {.levels = StepRange{0, 2}}),
-               kept = levelsOf(wallSolid(), {.levels = StepRange{0, 2}, .protectThin = true});
+    const auto torn = levelsOf(wallSolid(), {.levels = StepRange{0, 2}, .hold = Holding::none}),
+               kept = levelsOf(wallSolid(), {.levels = StepRange{0, 2}, .hold = Holding::shift});
     EXPECT_EQ(torn[0].topology.genus, 0);
     EXPECT_GT(torn[2].topology.genus, 0) << "the wall is torn or gone";
     EXPECT_LT(torn[2].thinKept, 0.9);
@@ -103,7 +103,8 @@ TEST(Levels, KeepThinWallsWhenAsked) {
 
 TEST(Levels, AreTheSameAloneAsInALadder) {
     LevelOptions volume, thin, specks;
-    volume.preserveVolume = thin.protectThin = specks.keepSpecks = true;
+    volume.preserveVolume = specks.keepSpecks = true;
+    thin.hold = Holding::shift;
     for (LevelOptions options : {volume, thin, specks}) {
         const Level alone = makeLevel(wallSolid(), 6, options);
         options.levels = StepRange{0, 2};
@@ -115,7 +116,7 @@ TEST(Levels, AreTheSameAloneAsInALadder) {
 }
 
 TEST(Levels, RefuseTwoReasonsForOneIsoValue) {
-    EXPECT_THROW(makeLadder(wallSolid(), {.preserveVolume = true, .protectThin = true}), UsageError);
+    EXPECT_THROW(makeLadder(wallSolid(), {.hold = Holding::shift, .preserveVolume = true}), UsageError);
     const Image wall = distanceImage({62, 62, 36}, framedWall);
     EXPECT_THROW(makeLadder(open(wall, {.iso = 0, .openBorder = true}), {.preserveVolume = true}),
                  UsageError);
@@ -254,13 +255,13 @@ TEST(Levels, SayHowMuchOfARiseIsSampling) {
 
 TEST(Levels, AreSampledFinerWhereTheMeshPerforatesThinWalls) {
     const auto levels = levelsOf(realSolid("meshes/pinion.off", {.voxels = 64}),
-                                 {.levels = StepRange{0, 2}, .protectThin = true});
+                                 {.levels = StepRange{0, 2}, .hold = Holding::shift});
     const int refine[] = {1, 1, 2};
     for (std::size_t i = 0; i <= 2; ++i) {
         EXPECT_EQ(levels[i].refine, refine[i]) << i;
         EXPECT_EQ(levels[i].topology.genus, 1) << i;
     }
-    EXPECT_EQ(makeLevel(realSolid("meshes/pinion.off", {.voxels = 64}), 6, {.protectThin = true})
+    EXPECT_EQ(makeLevel(realSolid("meshes/pinion.off", {.voxels = 64}), 6, {.hold = Holding::shift})
                   .report.topology.triangles,
               levels[2].topology.triangles);
 }

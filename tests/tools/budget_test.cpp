@@ -92,13 +92,18 @@ TEST_F(RingBudget, StaysWithinAToleranceAndWritesLevelsTooWhenAsked) {
     succeed({"check", (folder / "out/ring/ring_D0.3.stl").string()});
 }
 
-TEST_F(RingBudget, ChoosesTheFinestStepThatTheLimitsAllow) {
+TEST_F(RingBudget, CutsTheRingWhereNoHandleIsAllowed) {
     succeed(command({"--max-genus", "0"}));
     const Json b = report()["budgets"][0];
     EXPECT_EQ(b["file"], "ring_chosen.ply");
     EXPECT_EQ(b["genus"], 0);
-    EXPECT_GT(b["step"].get<int>(), 0);
+    EXPECT_EQ(b["step"], 0);
     EXPECT_EQ(b["why"], "the finest step that is allowed");
+    succeed(command({"--levels", "0", "--max-genus", "0", "--max-parts", "1"}));
+    const Json level = report()["levels"][0];
+    EXPECT_EQ(level["genus"], 0);
+    EXPECT_EQ(level["cuts"]["count"].get<int>() + level["fills"]["count"].get<int>(), 1);
+    EXPECT_EQ(level["limits_missed"], nullptr);
 }
 
 TEST_F(RingBudget, MeasuresTheDeviationFromTheZeroSetWhenAsked) {
@@ -127,7 +132,7 @@ TEST_F(RingBudget, RefusesWhatCannotBeInOneLine) {
              {{"--compact", "--threads", "1"}, 2, "--refine 2 or 4"},
              {{"--compact", "--refine", "2", "--relax", "1"}, 2, "exclude each other"},
              {{"--min-component", "1e9"}, 3, "no step has components"},
-             {{"--tolerance", "0.01", "--max-genus", "0"}, 3, "no step that is allowed"}}) {
+             {{"--max-parts", "0"}, 2, "between 1"}}) {
         const Result result = isowave(command(more));
         EXPECT_EQ(result.exitCode, code) << more[1];
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;

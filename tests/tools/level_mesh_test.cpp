@@ -55,7 +55,7 @@ class Levels : public ::testing::Test {
 };
 
 TEST_F(Levels, AreTheSameFromMeshAsFromLod) {
-    for (const std::string option : {"--preserve-volume", "--protect-thin", "--keep-specks"}) {
+    for (const std::string option : {"--preserve-volume", "--hold=shift", "--hold=none", "--keep-specks"}) {
         lod("wall", {"--levels", "0..2", option});
         succeed({"mesh", (folder / "wall.nrrd").string(), "--iso", "0", "--level", "2", option, "-o",
                  (folder / "one.ply").string()});
@@ -75,7 +75,7 @@ TEST_F(Levels, AreToldInALineEach) {
 
 TEST_F(Levels, RefuseTwoReasonsForOneIsoValue) {
     const std::string in = (folder / "wall.nrrd").string(), out = (folder / "o").string();
-    for (const Arguments& more : {Arguments{"--preserve-volume", "--protect-thin"},
+    for (const Arguments& more : {Arguments{"--preserve-volume", "--hold", "shift"},
                                   Arguments{"--preserve-volume", "--open-border"}}) {
         Arguments arguments{"lod", in, "--iso", "0", "-o", out};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -89,10 +89,10 @@ TEST_F(Levels, RefuseTwoReasonsForOneIsoValue) {
 
 TEST_F(Levels, AreSampledFinerWhereTheMeshPerforatesThinWalls) {
     const std::string pinion = std::string(ISOWAVE_TEST_DATA) + "/meshes/pinion.off";
-    succeed({"lod", pinion, "--voxels", "64", "--levels", "0..2", "--protect-thin", "-o",
+    succeed({"lod", pinion, "--voxels", "64", "--levels", "0..2", "--hold", "shift", "-o",
              (folder / "p").string()});
     EXPECT_EQ(jsonFile(folder / "p/report.json")["levels"][2]["refine"], 2);
-    succeed({"mesh", pinion, "--voxels", "64", "--level", "2", "--protect-thin", "-o",
+    succeed({"mesh", pinion, "--voxels", "64", "--level", "2", "--hold", "shift", "-o",
              (folder / "p.ply").string()});
     EXPECT_EQ(contentOf(folder / "p.ply"), contentOf(folder / "p/p_L2.ply"));
 }

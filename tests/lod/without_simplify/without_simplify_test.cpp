@@ -21,7 +21,7 @@ Solid ring() { return open(ringMesh(), {.voxels = 40}); }
 TEST(WithoutSimplify, LevelsAreMadeButNotMeasuredAgainstLevelZero) {
     EXPECT_FALSE(canMeasureDistances());
     const Ladder ladder =
-        makeLadder(ring(), {.levels = StepRange{0, 2}, .protectThin = true, .features = true});
+        makeLadder(ring(), {.levels = StepRange{0, 2}, .hold = Holding::shift, .features = true});
     ASSERT_EQ(ladder.levels.size(), 3u);
     EXPECT_EQ(ladder.levels[0].report.maxToLevel0, 0);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,10 +1,10 @@
-#include "lod/limit_level.h"
+#include "hold/limit_level.h"
 
 #include <gtest/gtest.h>
 
 #include "polygonize/fields.h"
 
-namespace isowave::lod {
+namespace isowave {
 namespace {
 
 using testing::fieldFromDistance;
@@ -43,4 +43,4 @@ TEST(LimitLevel, SaysWhatIsMissed) {
 }
 
 }  // namespace
-}  // namespace isowave::lod
+}  // namespace isowave

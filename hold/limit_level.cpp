@@ -1,10 +1,10 @@
-#include "lod/limit_level.h"
+#include "hold/limit_level.h"
 
 #include <algorithm>
 
 #include "hold/cut_or_fill.h"
 
-namespace isowave::lod {
+namespace isowave {
 namespace {
 
 void lower(std::optional<std::int64_t>& limit, std::int64_t most) {
@@ -48,4 +48,4 @@ void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, doub
     progress.say("limits on the topology are missed: " + edits.why);
 }
 
-}  // namespace isowave::lod
+}  // namespace isowave

@@ -7,7 +7,7 @@
 #include "isowave/ladder.h"
 #include "volume/field.h"
 
-namespace isowave::lod {
+namespace isowave {
 
 // What the options allow, and no more of anything than `before` has, where that is given: the level before, which a
 // coarser one must not exceed.
@@ -18,4 +18,4 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                 LevelReport& report, const Progress& progress);
 
-}  // namespace isowave::lod
+}  // namespace isowave
