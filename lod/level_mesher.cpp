@@ -41,7 +41,7 @@ void checkOptions(const LevelOptions& options, bool openBorder) {
     if (options.preserveVolume && options.hold == Holding::shift)
         throw UsageError(
             "--preserve-volume and --hold shift exclude each other: each chooses the iso-value of a level");
-    if (options.compact && options.refine == 1)
+    if (options.compact && options.refine.value_or(1) == 1)
         throw UsageError("--compact collapses what --refine 2 or 4 adds; give one of them");
     if (options.compact && options.relax > 0)
         throw UsageError(

@@ -122,7 +122,7 @@ TEST(Compact, RealPartsKeepTheTopologyOfTheFinerMeshAtAQuarterOfItsTriangles) {
 TEST(Refit, LevelsOfARealHeadAreNearerToLevelZero) {
     const auto levels = [](bool refit) {
         return levelsOf(open(dataFile("ct/cranium_crop.nrrd"), {.iso = 300}),
-                        {.levels = StepRange{0, 2}, .refine = 2, .refit = refit});
+                        {.levels = StepRange{0, 2}, .refine = 2, .hold = Holding::none, .refit = refit});
     };
     const auto plain = levels(false), refit = levels(true);
     ASSERT_EQ(refit.size(), plain.size());

@@ -89,12 +89,12 @@ TEST_F(Levels, RefuseTwoReasonsForOneIsoValue) {
 
 TEST_F(Levels, AreSampledFinerWhereTheMeshPerforatesThinWalls) {
     const std::string pinion = std::string(ISOWAVE_TEST_DATA) + "/meshes/pinion.off";
-    succeed({"lod", pinion, "--voxels", "64", "--levels", "0..2", "--hold", "shift", "-o",
+    succeed({"lod", pinion, "--voxels", "64", "--levels", "0..3", "--hold", "shift", "-o",
              (folder / "p").string()});
-    EXPECT_EQ(jsonFile(folder / "p/report.json")["levels"][2]["refine"], 2);
-    succeed({"mesh", pinion, "--voxels", "64", "--level", "2", "--hold", "shift", "-o",
+    EXPECT_EQ(jsonFile(folder / "p/report.json")["levels"][3]["refine"], 2);
+    succeed({"mesh", pinion, "--voxels", "64", "--level", "3", "--hold", "shift", "-o",
              (folder / "p.ply").string()});
-    EXPECT_EQ(contentOf(folder / "p.ply"), contentOf(folder / "p/p_L2.ply"));
+    EXPECT_EQ(contentOf(folder / "p.ply"), contentOf(folder / "p/p_L3.ply"));
 }
 
 TEST_F(Levels, OfAPyramidAreToldByInfo) {
