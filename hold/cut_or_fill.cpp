@@ -6,14 +6,13 @@
 #include "hold/cut_or_fill.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "hold/plug.h"
+#include "hold/until_stopped.h"
 #include "hold/topology_candidates.h"
 #include "polygonize/specks.h"
 
@@ -121,8 +120,7 @@ class Limiter {
 
     std::vector<std::optional<Choice>> tried(const std::vector<EditOptions>& all) {
         std::vector<Tried> results(all.size());
-        tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
-            progress_.check();
+        forEachUntilStopped(all.size(), progress_, [&](std::size_t i) {
             const auto known = known_.find(keysOf(all[i]));
             results[i] = known == known_.end() ? cheapest(all[i]) : known->second.tried;
         });

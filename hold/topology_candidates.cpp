@@ -1,12 +1,11 @@
 #include "hold/topology_candidates.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "hold/plug.h"
+#include "hold/until_stopped.h"
 #include "polygonize/cell_table.h"
 #include "polygonize/specks.h"
 
@@ -229,8 +228,7 @@ std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::si
         if (c.dimension == static_cast<int>(what)) wanted.push_back(c);
     const std::size_t largest = what == What::part ? largestPart() : 0;
     std::vector<EditOptions> all(wanted.size());
-    tbb::parallel_for(std::size_t(0), wanted.size(), [&](std::size_t i) {
-        progress_.check();
+    forEachUntilStopped(wanted.size(), progress_, [&](std::size_t i) {
         all[i] = what == What::part     ? part(wanted[i], largest)
                  : what == What::handle ? handle(wanted[i])
                                                       : cavity(wanted[i]);

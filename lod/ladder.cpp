@@ -175,11 +175,11 @@ PyramidCounts descendFrom(Solid solid, const StepChoice& choice, Maker& maker, c
     return counts;
 }
 
-PyramidCounts walk(const wavelets::Pyramid& pyramid, const StepChoice& choice, Maker& maker,
-                   const Progress& progress, StageClock& clock) {
+PyramidCounts walk(const wavelets::Pyramid& pyramid, const std::string& name, const StepChoice& choice,
+                   Maker& maker, const Progress& progress, StageClock& clock) {
     const StageClock::Scope scope(clock, "synthesise");
     for (int step = 0; step <= pyramid.stepCount(); ++step)
-        if (choice.visits(step)) maker.visit(step, pyramid.field(step, progress));
+        if (choice.visits(step)) maker.visit(step, fieldOf(pyramid, step, name, progress));
     return {pyramid.stepCount(), pyramid.coefficientsStored(), finestControlPoints(pyramid),
             pyramid.coarsest.controlPointCount()};
 }
@@ -188,7 +188,7 @@ PyramidCounts climb(Solid solid, const StepChoice& choice, Maker& maker, const P
                     StageClock& clock) {
     const std::string name = solid.input().path;
     const auto& pyramid = SolidAccess::of(solid).pyramid;
-    const PyramidCounts counts = pyramid ? walk(*pyramid, choice, maker, progress, clock)
+    const PyramidCounts counts = pyramid ? walk(*pyramid, name, choice, maker, progress, clock)
                                          : descendFrom(std::move(solid), choice, maker, progress, clock);
     if (maker.empty()) throw InputError(name, "has no surface; nothing to polygonize");
     if (choice.first() > counts.steps) throw InputError(name, tooFarText(choice.first(), counts.steps));
@@ -244,7 +244,7 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
     lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, lod::truthOf(solid),
                             progress, clock);
     if (step != 0 && mesher.needsLevel0())
-        mesher.make(0, state.field ? *state.field : state.pyramid->field(0, progress));
+        mesher.make(0, state.field ? *state.field : lod::fieldOf(*state.pyramid, 0, name, progress));
     const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
     lod::LevelMesh made = mesher.make(step, field);
     if (made.mesh.triangles.empty())

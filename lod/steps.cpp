@@ -30,12 +30,24 @@ std::string tooFarText(int step, int count) {
                        step);
 }
 
+BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::string& name,
+                     const Progress& progress) {
+    if (step < 0 || step > pyramid.stepCount()) throw InputError(name, tooFarText(step, pyramid.stepCount()));
+    for (int s = step; s < pyramid.stepCount(); ++s)
+        if (!pyramid.steps[static_cast<std::size_t>(s)].details)
+            throw UsageError(
+                fmt::format("{}: was opened from step {} on, and step {} is needed: holding thin parts "
+                            "measures against step 0; open it "
+                            "without finestStep, or ask for Holding::none",
+                            name, s + 1, step));
+    return pyramid.field(step, progress);
+}
+
 BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock) {
     const std::string name = solid.input().path;
     if (const auto& pyramid = SolidAccess::of(solid).pyramid) {
         const StageClock::Scope scope(clock, "synthesise");
-        if (step > pyramid->stepCount()) throw InputError(name, tooFarText(step, pyramid->stepCount()));
-        return pyramid->field(step, progress);
+        return fieldOf(*pyramid, step, name, progress);
     }
     if (step == 0) return SolidAccess::takeField(std::move(solid));
     const StageClock::Scope scope(clock, "analyse");

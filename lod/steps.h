@@ -10,6 +10,10 @@
 
 namespace isowave::lod {
 
+// The field of a pyramid's step. Throws UsageError when it was opened from a coarser step on, InputError when it does not go so far.
+BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::string& name,
+                     const Progress& progress);
+
 // The field of a step. Throws InputError when the solid does not go so far.
 BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock);
 

@@ -291,15 +291,15 @@ TEST(Levels, SayHowMuchOfARiseIsSampling) {
         return levelsOf(realSolid("meshes/pinion.off", {.voxels = 64}),
                         {.levels = StepRange{3, 3}, .refine = refine, .hold = Holding::none})[0];
     };
-    const LevelReport level = pinion(1), fine = pinion(2);
+    const LevelReport level = pinion(1), fine = pinion(4);
     EXPECT_EQ(level.change.handles, 5);
     ASSERT_TRUE(level.sampling);
     EXPECT_EQ(level.refine, 1);
-    EXPECT_EQ(level.sampling->refine, 2);
+    EXPECT_EQ(level.sampling->refine, 4) << "the lattice is doubled as long as something of the rise is left";
     EXPECT_THAT(tools::storyText(level, ""),
-                HasSubstr("4 of 5 new handles are the mesh's sampling, --refine 2 has 2"));
+                HasSubstr("4 of 5 new handles are the mesh's sampling, --refine 4 has 2"));
     EXPECT_EQ(level.sampling->counts, countsOf(fine.topology));
-    EXPECT_EQ(fine.refine, 2);
+    EXPECT_EQ(fine.refine, 4);
     EXPECT_FALSE(fine.sampling);
 }
 

@@ -21,14 +21,21 @@ class RingPyramid : public ::testing::Test {
 };
 
 TEST_F(RingPyramid, GivesTheMeshesThatTheSolidGives) {
-    const Ladder direct = makeLadder(ring(), {.steps = StepRange{0, 4}});
+    const LevelOptions plain{.hold = Holding::none}, all{.steps = StepRange{0, 4}, .hold = Holding::none};
+    const Ladder direct = makeLadder(ring(), all);
     for (int step = 0; step <= 4; ++step) {
-        const MeshTopology &got = makeLevel(open(file(), {.finestStep = step}), step).report.topology,
+        const MeshTopology &got = makeLevel(open(file(), {.finestStep = step}), step, plain).report.topology,
                            &level = direct.levels[std::size_t(step)].report.topology;
         EXPECT_EQ(got.triangles, level.triangles) << step;
         EXPECT_EQ(got.genus, level.genus) << step;
         EXPECT_NEAR(got.volume, level.volume, 1e-5 * level.volume) << step;
     }
+}
+
+TEST_F(RingPyramid, NeedsStep0ForWhatMeasuresAgainstIt) {
+    EXPECT_THROW(makeLevel(open(file(), {.finestStep = 3}), 3), UsageError);
+    EXPECT_THROW(makeLevel(open(file()), -1), InputError);
+    EXPECT_EQ(makeLevel(open(file()), 3).report.topology.genus, 1);
 }
 
 TEST_F(RingPyramid, IsAnInputLikeTheSolidItself) {
