@@ -55,6 +55,10 @@ class LevelHold {
     LevelHold(FinestSurface surface, BSplineField finest, const Progress& progress = {});
 
     const std::vector<ThinSample>& samples() const { return samples_; }
+    // The largest voxel of a level, in voxels of level 0, that keeps a wall of this thickness as it is: at refine 4.
+    static double widestVoxelFor(double thickness, const HoldOptions& options = {}) {
+        return 4 * thickness / options.leastThickness;
+    }
     // How finely a mesh of the level should sample it: 1 where next to nothing is thin for it, 2, or 4 where walls would have to be
     // thickened for 2.
     int refineFor(const BSplineField& level, const HoldOptions& options = {}) const;

@@ -304,6 +304,23 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
     return report;
 }
 
+// Said at the start: it tells how far down the ladder is worth going.
+void LevelMesher::tellWalls(LevelReport& report) const {
+    if (!level0_->hold || level0_->hold->samples().empty()) return;
+    std::string text;
+    for (const double share : {0.01, 0.05, 0.5}) {
+        const Thickness t = thinnest(level0_->hold->samples(), share);
+        WallThickness wall{share, t.voxels, t.world, {}};
+        const double widest = LevelHold::widestVoxelFor(t.voxels);
+        if (widest >= 1) wall.heldUpTo = static_cast<int>(std::floor(std::log2(widest)));
+        report.walls.push_back(wall);
+        text += fmt::format("{} {:.3g} ({:.3g} voxels, {})", text.empty() ? "" : ",", wall.world, wall.voxels,
+                            wall.heldUpTo ? fmt::format("kept up to level {}", *wall.heldUpTo)
+                                          : std::string("thickened at every level"));
+    }
+    progress_.say("the thinnest 1, 5, 50 % of the walls are" + text);
+}
+
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {
     double iso = 0;
     if (options_.preserveVolume && volumeToKeep() > 0)
@@ -317,7 +334,10 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest) {
     const StageClock::Scope scope(clock_, "polygonize");
     const int refine = level.report.refine;
     level.mesh = polygonizeAt(level.field, level.iso, refine);
-    if (level.report.step == 0) rememberLevel0(level.field, level.mesh, refine);
+    if (level.report.step == 0) {
+        rememberLevel0(level.field, level.mesh, refine);
+        if (level.report.walls.empty() && level0_->hold) tellWalls(level.report);
+    }
     SpeckRemoval removal = removeSpecks(level.mesh, smallest);
     if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
     if (options_.relax > 0) relax(level.mesh, ZeroSet(level.field, level.iso), options_.relax, progress_);

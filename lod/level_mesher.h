@@ -64,6 +64,7 @@ class LevelMesher {
     LevelMesh madeAt(int refine, int step, const BSplineField& field);
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
+    void tellWalls(LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
     SpeckRemoval draw(LevelMesh& level, double smallest);

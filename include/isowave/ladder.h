@@ -125,6 +125,14 @@ struct HoldSummary {
     std::int64_t unmet = 0;          // conditions that could not be met
 };
 
+// How thick the walls of a solid are: the thinnest 1, 5 and 50 % of them, by area, in voxels of level 0 and in world units; and up
+// to which level they keep that thickness, thinner ones being thickened (nothing: not even at level 0).
+struct WallThickness {
+    double share = 0;  // 0 to 1
+    double voxels = 0, world = 0;
+    std::optional<int> heldUpTo;
+};
+
 // A cut or a fill that made a level's topology simpler: a hole was filled or its ring cut, a part removed or joined to
 // another, a cavity filled or opened.
 enum class SolidFeature { part, handle, cavity };
@@ -156,6 +164,7 @@ struct LevelReport {
     std::optional<double>
         volumeError;  // volume / input.volume - 1, or / level 0's - 1 where the input has none
     std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
+    std::vector<WallThickness> walls;                // of level 0 alone, Holding::local
     std::optional<HoldSummary> hold;  // Holding::local: what it took; nothing where nothing is thin
     std::optional<FeatureReport> features;
 

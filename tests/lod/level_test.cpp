@@ -245,6 +245,20 @@ TEST(Levels, OfAThinWallHold) {
     }
 }
 
+TEST(Levels, SayHowThickTheWallsAre) {
+    const Image image = imageOf({48, 48, 48}, [](int x, int y, int z) {
+        return 100 *
+               std::max({std::abs(x - 23.7) - 2.5, std::abs(y - 24.0) - 15.2, std::abs(z - 24.0) - 15.2});
+    });
+    const auto levels = levelsOf(open(image, {.iso = 0}), {.levels = StepRange{0, 1}});
+    ASSERT_EQ(levels[0].walls.size(), 3u);
+    for (const WallThickness& wall : levels[0].walls) EXPECT_GE(wall.voxels, 4.5) << wall.share;
+    EXPECT_NEAR(levels[0].walls[1].voxels, 5, 0.1);  // a plate 5 voxels thick
+    EXPECT_NEAR(levels[0].walls[1].world, 5, 0.1);
+    EXPECT_EQ(levels[0].walls[1].heldUpTo, 4);  // voxels of 16: a quarter of one is less than 5 / 0.9
+    EXPECT_TRUE(levels[1].walls.empty());
+}
+
 // A solid without anything thin is drawn as the plain level, to the bit.
 TEST(Levels, WithNothingThinAreThePlainOnes) {
     const auto ball = [](Holding hold) {

@@ -100,6 +100,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                                         "thin_kept",
                                                         "thin_kept_at_iso_0",
                                                         "features",
+                                                        "walls",
                                                         "hold",
                                                         "cuts",
                                                         "fills",

@@ -64,6 +64,17 @@ Json samplingJson(const std::optional<SamplingReport>& s) {
             {"thin_kept", orNull(s->thinKept)}};
 }
 
+Json wallsJson(const std::vector<WallThickness>& walls) {
+    if (walls.empty()) return nullptr;
+    Json json = Json::array();
+    for (const WallThickness& w : walls)
+        json.push_back({{"share", w.share},
+                        {"voxels", w.voxels},
+                        {"thickness", w.world},
+                        {"kept_up_to_level", orNull(w.heldUpTo)}});
+    return json;
+}
+
 Json holdJson(const std::optional<HoldSummary>& h) {
     if (!h) return nullptr;
     return {{"samples", h->samples},     {"inside_plain", h->insidePlain},     {"inside", h->inside},
@@ -86,6 +97,7 @@ void putMesh(Json& json, const LevelReport& level) {
     json["volume_error"] = orNull(level.volumeError);
     json["thin_kept"] = orNull(level.thinKept);
     json["thin_kept_at_iso_0"] = orNull(level.thinKeptAtIso0);
+    json["walls"] = wallsJson(level.walls);
     json["hold"] = holdJson(level.hold);
     json["features"] = featuresJson(level.features);
     json["cuts"] = editsJson(level.edits, false);

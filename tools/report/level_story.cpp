@@ -89,6 +89,22 @@ void tellSpecks(Story& story, const LevelReport& level) {
                           counted(level.bubblesRemoved, "bubble")));
 }
 
+void tellEdits(Story& story, const LevelReport& level) {
+    for (const bool fill : {false, true}) {
+        std::int64_t count = 0;
+        double volume = 0;
+        for (const LevelEdit& edit : level.edits)
+            if (edit.fill == fill) {
+                ++count;
+                volume += edit.volume;
+            }
+        if (count > 0)
+            story.add(
+                fmt::format("{} of {} made", counted(count, fill ? "fill" : "cut"), shortNumber(volume)));
+    }
+    if (level.limitsMissed) story.add("limits missed: " + *level.limitsMissed);
+}
+
 void tellIso(Story& story, const LevelReport& level, const std::string& unit) {
     if (level.isoShift == 0 || !level.isoDistance || !std::isfinite(*level.isoDistance)) return;
     story.add(fmt::format("iso {:+.3f} K moves the surface by {:+.3g}{}", level.isoShift, *level.isoDistance,
@@ -121,6 +137,7 @@ std::string storyText(const LevelReport& level, const std::string& unit) {
     tellSampling(story, level);
     tellFeatures(story, level, unit);
     tellSpecks(story, level);
+    tellEdits(story, level);
     tellIso(story, level, unit);
     tellThin(story, level);
     return std::move(story).text();
