@@ -80,7 +80,7 @@ TEST(Levels, SayWhereTheVolumeIsOutOfReach) {
     EXPECT_TRUE(missed);
     remarks.text.clear();
     levelsOf(plateSolid(), {.levels = StepRange{0, 2}, .preserveVolume = true}, remarks.progress());
-    EXPECT_EQ(remarks.text, "");
+    EXPECT_EQ(remarks.text.find("out of reach"), std::string::npos) << remarks.text;
 }
 
 TEST(Levels, KeepThinWallsWhenAsked) {
@@ -247,7 +247,7 @@ TEST(Levels, OfAThinWallHold) {
 
 TEST(Levels, SayHowThickTheWallsAre) {
     const Image image = imageOf({48, 48, 48}, [](int x, int y, int z) {
-        return 100 *
+        return -100 *
                std::max({std::abs(x - 23.7) - 2.5, std::abs(y - 24.0) - 15.2, std::abs(z - 24.0) - 15.2});
     });
     const auto levels = levelsOf(open(image, {.iso = 0}), {.levels = StepRange{0, 1}});
@@ -263,7 +263,7 @@ TEST(Levels, SayHowThickTheWallsAre) {
 TEST(Levels, WithNothingThinAreThePlainOnes) {
     const auto ball = [](Holding hold) {
         const Image image = imageOf(
-            {64, 64, 64}, [](int x, int y, int z) { return std::hypot(x - 31.7, y - 32.2, z - 31.9) - 24; });
+            {64, 64, 64}, [](int x, int y, int z) { return 24 - std::hypot(x - 31.7, y - 32.2, z - 31.9); });
         return makeLadder(open(image, {.iso = 0}), {.levels = StepRange{0, 1}, .hold = hold});
     };
     const Ladder held = ball(Holding::local), plain = ball(Holding::none);
