@@ -12,8 +12,8 @@
 #include <set>
 
 #include "hold/plug.h"
-#include "hold/until_stopped.h"
 #include "hold/topology_candidates.h"
+#include "hold/until_stopped.h"
 #include "polygonize/specks.h"
 
 namespace isowave {
@@ -96,7 +96,8 @@ class Limiter {
     bool round() {
         for (const auto& depth : {TopologyCandidates::Depth{kDeepest * field_.K, kMostAtFirst},
                                   TopologyCandidates::Depth{2 * field_.K, kMostDecided}}) {
-            const TopologyCandidates candidates(field_, refine_, smallest_, depth, plugs_, useless_, progress_);
+            const TopologyCandidates candidates(field_, refine_, smallest_, depth, plugs_, useless_,
+                                                progress_);
             for (const What what : kOrder)
                 if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
         }
@@ -167,7 +168,8 @@ class Limiter {
             if (!choice) tried.useless.push_back(keyOf(option));
             if (!choice) continue;
             if (!best) estimate = option.estimate;
-            if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume)) best = std::move(choice);
+            if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume))
+                best = std::move(choice);
         }
         return tried;
     }

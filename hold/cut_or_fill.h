@@ -41,5 +41,4 @@ struct TopologyEdits {
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress = {});
 
-
 }  // namespace isowave

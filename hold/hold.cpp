@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "hold/point_grid.h"
 #include "volume/mesh_nearest.h"
 #include "volume/row_ascent.h"
+#include "volume/walls/one_per_cell.h"
 
 namespace isowave {
 namespace {
@@ -21,9 +23,9 @@ using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
-constexpr double kFewThin = 0.01;       // of the surface: so little asks for no finer sampling of all of it
+constexpr double kFewThin = 0.01;  // of the surface: so little asks for no finer sampling of all of it
 constexpr double kFewThickened = 0.002, kFewThickenedAtLevel1 = 0.05;  // of what is thin
-constexpr double kLongestRun = 2;      // of H: a longer one runs along a wall rather than across it
+constexpr double kLongestRun = 2;     // of H: a longer one runs along a wall rather than across it
 constexpr double kKnownDistance = 3;  // voxels: level 0's field is a distance up to there
 
 // n things in parallel, in pieces that cancel.
@@ -35,13 +37,25 @@ void forEach(std::size_t n, const Progress& progress, const Body& body) {
     });
 }
 
+// Which of n places are kept, as onePerCell() keeps them, in their own order.
+template <class PlaceOf, class KeyOf>
+std::vector<std::uint32_t> onePlacePerCell(std::size_t n, const Vec3d& cell, const PlaceOf& placeOf,
+                                           const KeyOf& keyOf) {
+    std::vector<std::uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<std::uint32_t> kept = onePerCell(all, cell, placeOf, keyOf);
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
 // Index space of level 0 -> that of a level.
 struct LevelScale {
     Vec3d h;   // the level's voxel on each axis, in voxels of level 0
     double H;  // its mean
 
     LevelScale(const BSplineField& finest, const BSplineField& level)
-        : h(level.transform().voxelSize() / finest.transform().voxelSize()), H(std::cbrt(h[0] * h[1] * h[2])) {}
+        : h(level.transform().voxelSize() / finest.transform().voxelSize()),
+          H(std::cbrt(h[0] * h[1] * h[2])) {}
     Vec3d toLevel(const Vec3d& at, const Vec3d& origin) const { return (at - origin) / h; }
     // The level's voxel along a direction.
     double along(const Vec3f& n) const { return (Vec3d(n) * h).length(); }
@@ -82,8 +96,8 @@ class Away {
 // The rows of one level.
 class Rows {
   public:
-    Rows(const FinestSurface& surface, const BSplineField& finest, double slope, const BSplineField& level, int refine,
-         const HoldOptions& options, const Progress& progress)
+    Rows(const FinestSurface& surface, const BSplineField& finest, double slope, const BSplineField& level,
+         int refine, const HoldOptions& options, const Progress& progress)
         : surface_(surface),
           finest_(finest),
           slope_(slope),
@@ -95,22 +109,18 @@ class Rows {
 
     bool isThin(const ThinSample& s) const {
         const double H = scale_.along(s.normal);
-        return s.thickness <= options_.longest * H && s.length <= kLongestRun * H && s.partVolume >= scale_.h[0] * scale_.h[1] * scale_.h[2];
+        return s.thickness <= options_.longest * H && s.length <= kLongestRun * H &&
+               s.partVolume >= scale_.h[0] * scale_.h[1] * scale_.h[2];
     }
 
     void choose(const std::vector<ThinSample>& samples) {
-        std::vector<Vec3f> at;
+        std::vector<ThinSample> thin;
         for (const ThinSample& s : samples)
-            if (isThin(s)) {
-                samples_.push_back(s);
-                at.push_back(s.at);
-            }
-        const auto kept = oneOfEachCell(at, cell(), [&](std::uint32_t a, std::uint32_t b) {
-            return samples_[a].thickness < samples_[b].thickness;
-        });
-        std::vector<ThinSample> chosen;
-        for (const std::uint32_t i : kept) chosen.push_back(samples_[i]);
-        samples_ = std::move(chosen);
+            if (isThin(s)) thin.push_back(s);
+        const auto kept = onePlacePerCell(
+            thin.size(), cell(), [&](std::uint32_t i) { return Vec3d(thin[i].at); },
+            [&](std::uint32_t i) { return thin[i].thickness; });
+        for (const std::uint32_t i : kept) samples_.push_back(thin[i]);
     }
 
     void add() {
@@ -147,7 +157,9 @@ class Rows {
 
     void chooseSurface() {
         const Vec3d size = openvdb::math::maxComponent(cell(), Vec3d(0.5));
-        near_ = oneOfEachCell(surface_.points, size, [](std::uint32_t a, std::uint32_t b) { return a < b; });
+        near_ = onePlacePerCell(
+            surface_.points.size(), size, [&](std::uint32_t i) { return surface_.points[i]; },
+            [](std::uint32_t) { return 0.0; });
         sampleOf_.assign(near_.size(), PointGrid::kNone);
         forEach(near_.size(), progress_, [&](std::size_t i) {
             sampleOf_[i] = grid_->nearest(surface_.points[near_[i]], kSamplesReachSurface * scale_.H).index;
@@ -188,12 +200,14 @@ class Rows {
         openvdb::MaskTree mask;
         openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(mask);
         for (const ThinSample& s : samples_) accessor.setValueOn(Coord::round(Vec3d(s.at) / step));
-        const int reach = static_cast<int>(std::ceil(kSamplesReachOut * scale_.H / std::min({step[0], step[1], step[2]})));
+        const int reach =
+            static_cast<int>(std::ceil(kSamplesReachOut * scale_.H / std::min({step[0], step[1], step[2]})));
         openvdb::tools::dilateActiveValues(mask, std::min(reach, 4), openvdb::tools::NN_FACE_EDGE_VERTEX,
                                            openvdb::tools::EXPAND_TILES);
         std::vector<Vec3d> places;
         mask.voxelizeActiveTiles();
-        for (auto voxel = mask.cbeginValueOn(); voxel; ++voxel) places.push_back(voxel.getCoord().asVec3d() * step);
+        for (auto voxel = mask.cbeginValueOn(); voxel; ++voxel)
+            places.push_back(voxel.getCoord().asVec3d() * step);
         return places;
     }
 
@@ -262,7 +276,8 @@ int LevelHold::refineFor(const BSplineField& level, const HoldOptions& options) 
     return thickened > few * thin ? 4 : 2;
 }
 
-HoldReport LevelHold::apply(BSplineField& level, int refine, const HoldOptions& options, const Progress& progress) const {
+HoldReport LevelHold::apply(BSplineField& level, int refine, const HoldOptions& options,
+                            const Progress& progress) const {
     constexpr int kRounds = 40, kInner = 12;
     HoldReport report;
     Rows rows(surface_, finest_, slope_, level, refine, options, progress);

@@ -6,12 +6,12 @@
 // that it is a distance beside level 0's surface. A mesh that samples F at H/r keeps a wall of thickness H/r, not more. So
 // where level 0 is thinner, the wall is thickened by
 //
-//   e = max(0, half - t/2),  half = kLeastThickness H / (2 r)      t: its thickness at the nearest sample
+//   e = max(0, half - t/2),  half = leastThickness H / (2 r)       t: its thickness at the nearest sample
 //
 // and nowhere else is the surface asked to move:
 //
-//   hard    F(x) <= -kDepth H and F(x +- half n) <= 0                 at thin samples x, n across the wall
-//   soft    F(p + (e + m) N) >= 0, F(p - m N) <= 0, m = kMargin H     at level 0's surface p, N its normal
+//   hard    F(x) <= -depth H and F(x +- half n) <= 0                 at thin samples x, n across the wall
+//   soft    F(p + (e + m) N) >= 0, F(p - m N) <= 0, m = margin H      at level 0's surface p, N its normal
 //           F(y) >= 0                                                 farther out, so that nothing swells between the samples
 //
 // The least change of the control points that meets them is found by dual coordinate ascent (volume/row_ascent.h), soft rows with
@@ -38,12 +38,12 @@ struct HoldOptions {
 };
 
 struct HoldReport {
-    std::int64_t samples = 0;      // thin for this level, one a cell of H/4
-    std::int64_t rows = 0;         // conditions on F
-    std::int64_t unmet = 0;        // hard ones that are not met in the end
-    std::int64_t changed = 0;      // control points
+    std::int64_t samples = 0;                   // thin for this level, one a cell of H/4
+    std::int64_t rows = 0;                      // conditions on F
+    std::int64_t unmet = 0;                     // hard ones that are not met in the end
+    std::int64_t changed = 0;                   // control points
     std::int64_t insideBefore = 0, inside = 0;  // samples with F < 0, in the plain level and now
-    std::int64_t thickened = 0;    // samples where e > 0
+    std::int64_t thickened = 0;                 // samples where e > 0
     int rounds = 0;
     bool settled = true;
 };

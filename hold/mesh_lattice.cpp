@@ -45,7 +45,8 @@ LatticeFunction alongAxis(const LatticeFunction& in, int axis, int length, const
     const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     tbb::parallel_for(0, in.size[u], [&](int i) {
         for (int j = 0; j < in.size[v]; ++j)
-            line(&in.values[i * from[u] + j * from[v]], from[axis], &out.values[i * to[u] + j * to[v]], to[axis]);
+            line(&in.values[i * from[u] + j * from[v]], from[axis], &out.values[i * to[u] + j * to[v]],
+                 to[axis]);
     });
     return out;
 }
@@ -66,7 +67,8 @@ LatticeFunction onPointsAndBetween(const LatticeFunction& c, int axis) {
         for (int k = 0; k < n; ++k, in += s, out += 2 * t) {
             *out = static_cast<float>((double(in[0]) + 4 * double(in[s]) + in[2 * s]) / 6);
             if (k + 1 < n)
-                out[t] = static_cast<float>((double(in[0]) + 23 * (double(in[s]) + in[2 * s]) + in[3 * s]) / 48);
+                out[t] =
+                    static_cast<float>((double(in[0]) + 23 * (double(in[s]) + in[2 * s]) + in[3 * s]) / 48);
         }
     });
 }
@@ -206,7 +208,8 @@ MeshLattice decidedLattice(const BSplineField& field, int refine, const Progress
                 if (oddAxes(at) == 1)  // of two ends that differ an edge has the lower one, as its sign
                     for (int a = 0; a < 3; ++a)
                         if (at[a] & 1) {
-                            const float low = f.values[i - signs.stride(a)], high = f.values[i + signs.stride(a)];
+                            const float low = f.values[i - signs.stride(a)],
+                                        high = f.values[i + signs.stride(a)];
                             if ((low < 0) != (high < 0)) v = std::min(low, high);
                         }
                 v = signs.inside(i) ? std::min(v, -kLeast) : std::max(v, kLeast);

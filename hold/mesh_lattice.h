@@ -41,7 +41,8 @@ MeshLattice meshLattice(const BSplineField& field, int refine, const Progress& p
 
 // F at lattice points of a field's control points and halfway between them on each axis: from `low`, `points` lattice
 // points on each axis, so 2 points - 1 values.
-LatticeFunction halfwayValues(const BSplineField& field, const openvdb::Coord& low, const openvdb::Coord& points);
+LatticeFunction halfwayValues(const BSplineField& field, const openvdb::Coord& low,
+                              const openvdb::Coord& points);
 
 // Which places of such an array are inside for a mesh that samples the lattice: lattice points by F's sign; in
 // ambiguous faces, and in cells where the table asks, the sign of F there (polygonize/cell_table.h). The others follow

@@ -16,7 +16,7 @@ inline constexpr int kWidestPlug = 12;  // lattice steps of the mesh from the mi
 // the farthest first. Topology is that of the mesh (DecidedSigns), for which faces and cells keep F's sign.
 // Empty where `at` does not change the topology, as when the hole is wider than the radius, or is not joined to X
 // within it. In the order of the coordinates.
-std::vector<openvdb::Coord> leastPlug(const BSplineField& fine, const openvdb::Coord& at, bool fill, float height,
-                                      int radius);
+std::vector<openvdb::Coord> leastPlug(const BSplineField& fine, const openvdb::Coord& at, bool fill,
+                                      float height, int radius);
 
 }  // namespace isowave

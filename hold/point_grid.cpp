@@ -31,7 +31,8 @@ PointGrid::PointGrid(const std::vector<openvdb::Vec3f>& points, double cell) : c
 PointGrid::Nearest PointGrid::nearest(const Vec3d& at, double radius) const {
     Nearest best;
     double bound = radius * radius;
-    const Coord low = Coord::floor((at - Vec3d(radius)) / cell_), high = Coord::floor((at + Vec3d(radius)) / cell_);
+    const Coord low = Coord::floor((at - Vec3d(radius)) / cell_),
+                high = Coord::floor((at + Vec3d(radius)) / cell_);
     for (int x = low[0]; x <= high[0]; ++x)
         for (int y = low[1]; y <= high[1]; ++y)
             for (int z = low[2]; z <= high[2]; ++z) {

@@ -22,7 +22,8 @@ struct OnLine {
     std::uint32_t vertex;
 };
 
-constexpr double kWhole = 1e-5;  // of a sample edge: polygonize() keeps vertices 1e-3 away from lattice points
+constexpr double kWhole =
+    1e-5;  // of a sample edge: polygonize() keeps vertices 1e-3 away from lattice points
 
 // The axis of the lattice edge that a point lies on; -1 for one inside a cell.
 int axisOf(const Vec3d& at) {
@@ -62,7 +63,8 @@ ThinSample sampleBetween(const FinestSurface& surface, const OnLine& in, const O
     const int axis = static_cast<int>(in.line >> 62);
     const double length = (out.along - in.along) / surface.refine;
     const Vec3f nIn = surface.normals[in.vertex], nOut = surface.normals[out.vertex];
-    if (!(length <= longest) || nIn[axis] >= 0 || nOut[axis] <= 0 || nIn.dot(nOut) > kOppositeNormals) return sample;
+    if (!(length <= longest) || nIn[axis] >= 0 || nOut[axis] <= 0 || nIn.dot(nOut) > kOppositeNormals)
+        return sample;
     sample.normal = (nOut - nIn).unit();
     sample.at = Vec3f((surface.points[in.vertex] + surface.points[out.vertex]) / 2);
     const float share = std::abs(sample.normal[axis]);
@@ -110,7 +112,8 @@ double areaOf(const FinestSurface& surface) {
     return area / (surface.refine * surface.refine);
 }
 
-std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, const Progress& progress) {
+std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest,
+                                      const Progress& progress) {
     const std::vector<OnLine> vertices = verticesOnLines(surface);
     std::vector<ThinSample> samples(vertices.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(1, std::max<std::size_t>(1, vertices.size()), 4096),
@@ -124,20 +127,24 @@ std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longe
     return samples;
 }
 
-Thickness thinnest(const std::vector<ThinSample>& samples, double share) {
-    if (samples.empty()) return {};
+std::vector<Thickness> thinnest(const std::vector<ThinSample>& samples, const std::vector<double>& shares) {
     std::vector<std::uint32_t> order(samples.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return samples[a].thickness != samples[b].thickness ? samples[a].thickness < samples[b].thickness : a < b;
+    tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return samples[a].thickness != samples[b].thickness ? samples[a].thickness < samples[b].thickness
+                                                            : a < b;
     });
     double total = 0, sum = 0;
     for (const ThinSample& s : samples) total += s.area;
+    std::vector<Thickness> found(shares.size());
+    std::size_t next = 0;
     for (const std::uint32_t i : order) {
         sum += samples[i].area;
-        if (sum >= share * total) return {samples[i].thickness, samples[i].thicknessInWorld};
+        const bool last = i == order.back();
+        while (next < shares.size() && (last || sum >= shares[next] * total))
+            found[next++] = {samples[i].thickness, samples[i].thicknessInWorld};
     }
-    return {samples[order.back()].thickness, samples[order.back()].thicknessInWorld};
+    return found;
 }
 
 }  // namespace isowave

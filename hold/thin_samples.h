@@ -46,13 +46,14 @@ inline constexpr double kOppositeNormals = -0.7;
 
 // Runs no longer than `longest` (voxels), along the three axes in turn, along each in the order of the lines: the same for any
 // number of threads.
-std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, const Progress& progress = {});
+std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest,
+                                      const Progress& progress = {});
 
-// How thick the thinnest `share` (0 to 1) of the walls are, weighted by area: the thickness in voxels and in world units.
-// Zeros where there is no sample.
+// How thick the thinnest share (0 to 1) of the walls are, weighted by area: the thickness in voxels and in world units, for
+// each of the shares. Zeros where there is no sample. REQUIRES: ascending shares.
 struct Thickness {
     double voxels = 0, world = 0;
 };
-Thickness thinnest(const std::vector<ThinSample>& samples, double share);
+std::vector<Thickness> thinnest(const std::vector<ThinSample>& samples, const std::vector<double>& shares);
 
 }  // namespace isowave

@@ -50,9 +50,15 @@ bool isEstimatedLess(const EditOption& a, const EditOption& b) { return a.estima
 
 }  // namespace
 
-TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth,
-                                       PlugMemo& memo, const std::set<OptionKey>& useless, const Progress& progress)
-    : field_(field), memo_(memo), useless_(useless), progress_(progress), refine_(refine), fine_(refinedField(field, refine, progress)) {
+TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, double smallestPart,
+                                       const Depth& depth, PlugMemo& memo, const std::set<OptionKey>& useless,
+                                       const Progress& progress)
+    : field_(field),
+      memo_(memo),
+      useless_(useless),
+      progress_(progress),
+      refine_(refine),
+      fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
     twice_ = latticePoints(field, 2 * refine) <= depth.decided;
     found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
@@ -75,8 +81,8 @@ std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const
     if (!twice_) return {c};
     std::vector<std::pair<float, Coord>> found;
     for (int k = 0; k < 8; ++k) {
-        const Coord corner = c.offsetBy(k >> 2 & c[0] & 1 ? 1 : -(c[0] & 1), k >> 1 & c[1] & 1 ? 1 : -(c[1] & 1),
-                                        k & c[2] & 1 ? 1 : -(c[2] & 1));
+        const Coord corner = c.offsetBy(k >> 2 & c[0] & 1 ? 1 : -(c[0] & 1),
+                                        k >> 1 & c[1] & 1 ? 1 : -(c[1] & 1), k & c[2] & 1 ? 1 : -(c[2] & 1));
         const float f = found_.at(corner);
         if ((f < 0) != fill) found.emplace_back(std::abs(f), corner >> 1);
     }
@@ -95,8 +101,8 @@ void TopologyCandidates::addPlugFrom(const PlugStart& start, TopologyEdit::What 
         if (radius / coarser < kRadii[0]) continue;
         EditOption option{editAt(start.at.asVec3d() * coarser / refine_, what, fill), {}, 0, eulerOf(what)};
         option.plan.fill = fill;
-        option.plan.points =
-            memo_.at({scaled(start.at, coarser), fill, start.height, start.onControlPoints ? -radius : radius}, [&] {
+        option.plan.points = memo_.at(
+            {scaled(start.at, coarser), fill, start.height, start.onControlPoints ? -radius : radius}, [&] {
                 if (!start.onControlPoints) return leastPlug(fine_, start.at, fill, start.height, radius);
                 return refined(leastPlug(field_, start.at, fill, start.height, radius / coarser), refine_);
             });
@@ -109,7 +115,8 @@ void TopologyCandidates::addPlugFrom(const PlugStart& start, TopologyEdit::What 
 
 // About the saddle on the mesh's lattice; and where that is finer than the control points, on theirs: thin sheets
 // between them may be more than the spline can bend to.
-void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
+void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool fill,
+                                 EditOptions& options) const {
     constexpr std::size_t kMostAnchors = 4;
     const float height = std::abs(found_.function.values[at]);
     const std::vector<Coord> starts = anchors(at, fill);
@@ -119,11 +126,13 @@ void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool 
     const Vec3d place = found_.placeOf(at);
     const openvdb::CoordBBox corners(Coord::floor(place), Coord::ceil(place));
     for (auto c = corners.begin(); c; ++c)
-        if ((evaluate(field_, (*c).asVec3d()) < 0) != fill) addPlugFrom({*c, height, true}, what, fill, options);
+        if ((evaluate(field_, (*c).asVec3d()) < 0) != fill)
+            addPlugFrom({*c, height, true}, what, fill, options);
 }
 
 // Where the field is asked about a face or a cell its answer there is all that need change.
-void TopologyCandidates::addDecider(std::int64_t at, TopologyEdit::What what, bool fill, EditOptions& options) const {
+void TopologyCandidates::addDecider(std::int64_t at, TopologyEdit::What what, bool fill,
+                                    EditOptions& options) const {
     const Coord c = found_.coordOf(at);
     if (!twice_ || parityOf(c) < 2) return;
     unsigned pattern = 0;
@@ -231,7 +240,7 @@ std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::si
     forEachUntilStopped(wanted.size(), progress_, [&](std::size_t i) {
         all[i] = what == What::part     ? part(wanted[i], largest)
                  : what == What::handle ? handle(wanted[i])
-                                                      : cavity(wanted[i]);
+                                        : cavity(wanted[i]);
         std::erase_if(all[i], [&](const EditOption& option) { return useless_.count(keyOf(option)) != 0; });
         std::stable_sort(all[i].begin(), all[i].end(), isEstimatedLess);
     });

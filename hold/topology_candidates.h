@@ -60,15 +60,16 @@ class TopologyCandidates {
   public:
     // How thoroughly to look.
     struct Depth {
-        double last;     // of F: up to which holes, gaps and cavities are followed
-        double decided;  // points up to which decidedLattice() is used; beyond, the mesh's own with an eighth of them
+        double last;  // of F: up to which holes, gaps and cavities are followed
+        double
+            decided;  // points up to which decidedLattice() is used; beyond, the mesh's own with an eighth of them
     };
     // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left
     // out.
     // memo: of the same field and refinement. useless: options that are no longer offered; a plug that is one of them
     // is grown again with a wider radius.
-    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth, PlugMemo& memo,
-                       const std::set<OptionKey>& useless, const Progress& progress);
+    TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth,
+                       PlugMemo& memo, const std::set<OptionKey>& useless, const Progress& progress);
 
     // By least estimate. Up to `most` things; the largest part is not among them.
     std::vector<EditOptions> of(TopologyEdit::What what, std::size_t most) const;
@@ -99,7 +100,7 @@ class TopologyCandidates {
     const std::set<OptionKey>& useless_;
     const Progress& progress_;
     int refine_;
-    double smallest_;        // in lattice cells of the mesh
+    double smallest_;    // in lattice cells of the mesh
     BSplineField fine_;  // on the lattice that the mesh samples
     MeshLattice found_;  // where classes are found: that lattice, or twice as fine
     bool twice_;

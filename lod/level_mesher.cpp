@@ -47,6 +47,8 @@ void checkOptions(const LevelOptions& options, bool openBorder) {
         throw UsageError(
             "--compact and --relax exclude each other: one keeps the volume, the other goes back to the zero "
             "set");
+    if ((options.maxGenus || options.maxParts) && openBorder)
+        throw UsageError("--max-genus and --max-parts need closed meshes; leave out --open-border");
     if (options.preserveVolume && openBorder)
         throw UsageError("--preserve-volume needs a closed surface; leave out --open-border");
     if (options.compact) requireSimplifier("--compact");
@@ -72,9 +74,7 @@ InputTruth InputTruth::of(const InputReport& input) {
     return truth;
 }
 
-bool isMore(const SolidCounts& now, const SolidCounts& before) {
-    return now.parts > before.parts || now.handles > before.handles || now.cavities > before.cavities;
-}
+bool isMore(const SolidCounts& now, const SolidCounts& before) { return excess(now, before) > 0; }
 
 // What the coarser steps are compared with.
 struct LevelMesher::Level0 {
@@ -149,7 +149,6 @@ void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& 
     level0_ = std::make_unique<Level0>();
     if (mesh.triangles.empty()) return;
     level0_->volume = volumeWithoutSpecks(mesh, 0);
-    if (options_.hold == Holding::local) level0_->counts = countsOf(topologyOf(mesh));
     if (options_.refit) level0_->surface = surfaceSamples(mesh);
     if (options_.hold == Holding::local) {
         const StageClock::Scope scope(clock_, "hold");
@@ -212,16 +211,20 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     LevelMesh level = chosen(step, fieldToDraw(step, given));
     limit(level);
     before_ = countsOf(level.report.topology);
+    if (step == 0) {
+        level0_->counts = *before_;
+        tellWalls(level.report);
+    }
     return level;
 }
 
 LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
-    int refine = refineFor(step, field);
-    LevelMesh level = madeAt(refine, step, field);
+    LevelMesh level = madeAt(sampled(step, field), step, field);
+    int refine = level.report.refine;
     if (options_.hold == Holding::shift) return shifted(std::move(level), step, field);
     if (!holds(step) || options_.refine || openBorder_) return level;
     while (refine < kFinestRefine && isMore(countsOf(level.report.topology), level0_->counts)) {
-        LevelMesh finer = madeAt(refine *= 2, step, field);
+        LevelMesh finer = madeAt({refine *= 2}, step, field);
         if (!isMore(countsOf(level.report.topology), countsOf(finer.report.topology))) break;
         level = std::move(finer);
     }
@@ -257,7 +260,7 @@ void LevelMesher::limit(LevelMesh& level) {
 LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& field) {
     const int refine = level.report.refine;
     if (step == 0 || openBorder_ || refine == kFinestRefine) return level;
-    LevelMesh finer = madeAt(2 * refine, step, field);
+    LevelMesh finer = madeAt({2 * refine}, step, field);
     const auto pieces = [](const LevelMesh& l) {
         return l.report.topology.components + l.report.topology.genus;
     };
@@ -266,22 +269,25 @@ LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& fi
 }
 
 // The least that gives the input's parts, handles and cavities, and its volume as nearly as a finer one does.
-int LevelMesher::refineOfLevel0(const BSplineField& field) const {
+LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) const {
     constexpr double kNear = 0.005, kNoNearer = 0.002;  // of the volume
-    if (options_.hold != Holding::local || openBorder_ || !truth_.volume) return 1;
+    if (options_.hold != Holding::local || openBorder_ || !truth_.volume) return {};
     const auto isRight = [&](const MeshTopology& t) {
         return !truth_.counts || countsOf(t) == *truth_.counts;
     };
-    MeshTopology now = topologyOf(polygonizeAt(field, 0, 1));
-    for (int refine = 1; refine < kFinestRefine; refine *= 2) {
-        const bool near = std::abs(now.volume / *truth_.volume - 1) <= kNear;
-        if (near && isRight(now)) return refine;
-        const MeshTopology finer = topologyOf(polygonizeAt(field, 0, 2 * refine));
-        const bool nearer = std::abs(finer.volume - now.volume) > kNoNearer * *truth_.volume;
-        if (!nearer && countsOf(finer) == countsOf(now)) return refine;
-        now = finer;
+    Sampled now{1, polygonizeAt(field, 0, 1)};
+    MeshTopology topology = topologyOf(now.mesh);
+    while (now.refine < kFinestRefine) {
+        const bool near = std::abs(topology.volume / *truth_.volume - 1) <= kNear;
+        if (near && isRight(topology)) return now;
+        Sampled finer{2 * now.refine, polygonizeAt(field, 0, 2 * now.refine)};
+        const MeshTopology finerTopology = topologyOf(finer.mesh);
+        const bool nearer = std::abs(finerTopology.volume - topology.volume) > kNoNearer * *truth_.volume;
+        if (!nearer && countsOf(finerTopology) == countsOf(topology)) return now;
+        now = std::move(finer);
+        topology = finerTopology;
     }
-    return kFinestRefine;
+    return now;
 }
 
 std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, const SolidCounts& before) const {
@@ -308,9 +314,11 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
 void LevelMesher::tellWalls(LevelReport& report) const {
     if (!level0_->hold || level0_->hold->samples().empty()) return;
     std::string text;
-    for (const double share : {0.01, 0.05, 0.5}) {
-        const Thickness t = thinnest(level0_->hold->samples(), share);
-        WallThickness wall{share, t.voxels, t.world, {}};
+    const std::vector<double> shares{0.01, 0.05, 0.5};
+    const std::vector<Thickness> thickness = thinnest(level0_->hold->samples(), shares);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const Thickness& t = thickness[i];
+        WallThickness wall{shares[i], t.voxels, t.world, {}};
         const double widest = LevelHold::widestVoxelFor(t.voxels);
         if (widest >= 1) wall.heldUpTo = static_cast<int>(std::floor(std::log2(widest)));
         report.walls.push_back(wall);
@@ -330,14 +338,12 @@ double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vect
     return iso;
 }
 
-SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest) {
+SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest, TriangleMesh ready) {
     const StageClock::Scope scope(clock_, "polygonize");
     const int refine = level.report.refine;
-    level.mesh = polygonizeAt(level.field, level.iso, refine);
-    if (level.report.step == 0) {
-        rememberLevel0(level.field, level.mesh, refine);
-        if (level.report.walls.empty() && level0_->hold) tellWalls(level.report);
-    }
+    const bool isReady = level.iso == 0 && !ready.triangles.empty();
+    level.mesh = isReady ? std::move(ready) : polygonizeAt(level.field, level.iso, refine);
+    if (level.report.step == 0) rememberLevel0(level.field, level.mesh, refine);
     SpeckRemoval removal = removeSpecks(level.mesh, smallest);
     if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
     if (options_.relax > 0) relax(level.mesh, ZeroSet(level.field, level.iso), options_.relax, progress_);
@@ -347,10 +353,10 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest) {
     return removal;
 }
 
-int LevelMesher::refineFor(int step, const BSplineField& field) const {
-    if (options_.refine) return *options_.refine;
-    if (step == 0) return refineOfLevel0(field);
-    return holds(step) ? level0_->hold->refineFor(field) : 1;
+LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) const {
+    if (options_.refine) return {*options_.refine};
+    if (step == 0) return sampledLevel0(field);
+    return {holds(step) ? level0_->hold->refineFor(field) : 1};
 }
 
 bool LevelMesher::compacts(int refine) const { return options_.compact || (!options_.refine && refine > 1); }
@@ -370,25 +376,26 @@ void LevelMesher::hold(LevelMesh& level) const {
     report.hold = {held.samples, held.insideBefore, held.inside, held.thickened, held.changed, held.unmet};
 }
 
-LevelMesh LevelMesher::madeAt(int refine, int step, const BSplineField& field) {
+LevelMesh LevelMesher::madeAt(Sampled sampled, int step, const BSplineField& field) {
     LevelMesh level;
     LevelReport& report = level.report;
     level.field = field;
     report.step = step;
     if (step % kStepsPerLevel == 0) report.level = step / kStepsPerLevel;
-    report.refine = refine;
+    report.refine = sampled.refine;
     if (holds(step)) hold(level);
     std::optional<std::vector<double>> thin;
-    if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, refine);
+    if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, report.refine);
     level.iso = isoFor(level, thin);
-    drawAll(level, thin);
+    drawAll(level, thin, std::move(sampled.mesh));
     return level;
 }
 
-void LevelMesher::drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin) {
+void LevelMesher::drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin,
+                          TriangleMesh ready) {
     LevelReport& report = level.report;
     const double smallest = smallestAt(report.step, level.field);
-    const SpeckRemoval removal = draw(level, smallest);
+    const SpeckRemoval removal = draw(level, smallest, std::move(ready));
     report.specksRemoved = removal.specks;
     report.speckVolume = removal.speckVolume;
     report.bubblesRemoved = removal.bubbles;

@@ -55,19 +55,24 @@ class LevelMesher {
 
     TriangleMesh polygonizeAt(const BSplineField& field, double iso, int refine) const;
     BSplineField fieldToDraw(int step, const BSplineField& field) const;
-    int refineFor(int step, const BSplineField& field) const;
-    int refineOfLevel0(const BSplineField& field) const;
+    // How finely a field is sampled; and its mesh at iso 0 where choosing took one, else empty.
+    struct Sampled {
+        int refine = 1;
+        TriangleMesh mesh = {};
+    };
+    Sampled sampled(int step, const BSplineField& field) const;
+    Sampled sampledLevel0(const BSplineField& field) const;
     LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
     LevelMesh chosen(int step, const BSplineField& field);
     void limit(LevelMesh& level);
-    void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin);
-    LevelMesh madeAt(int refine, int step, const BSplineField& field);
+    void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin, TriangleMesh ready = {});
+    LevelMesh madeAt(Sampled sampled, int step, const BSplineField& field);
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
     void tellWalls(LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
-    SpeckRemoval draw(LevelMesh& level, double smallest);
+    SpeckRemoval draw(LevelMesh& level, double smallest, TriangleMesh ready);
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
     bool compacts(int refine) const;
     void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine);

@@ -120,6 +120,8 @@ TEST(Levels, RefuseTwoReasonsForOneIsoValue) {
     const Image wall = distanceImage({62, 62, 36}, framedWall);
     EXPECT_THROW(makeLadder(open(wall, {.iso = 0, .openBorder = true}), {.preserveVolume = true}),
                  UsageError);
+    for (const LevelOptions& limits : {LevelOptions{.maxGenus = 0}, LevelOptions{.maxParts = 1}})
+        EXPECT_THROW(makeLadder(open(wall, {.iso = 0, .openBorder = true}), limits), UsageError);
     EXPECT_THROW(makeLadder(wallSolid(), {.levels = StepRange{}, .steps = StepRange{}}), UsageError);
 }
 

@@ -11,10 +11,10 @@
 
 namespace isowave {
 
-// Of the items in each cell of edge `size` the one with the least key; of equal ones the first. In the order of
-// cells. placeOf(item) -> Vec3d, keyOf(item) -> double.
-template <class Item, class PlaceOf, class KeyOf>
-std::vector<Item> onePerCell(const std::vector<Item>& items, double size, const PlaceOf& placeOf,
+// Of the items in each cell of edge `size` (a number, or one for each axis) the one with the least key; of equal ones
+// the first. In the order of cells. placeOf(item) -> Vec3d, keyOf(item) -> double.
+template <class Item, class Size, class PlaceOf, class KeyOf>
+std::vector<Item> onePerCell(const std::vector<Item>& items, const Size& size, const PlaceOf& placeOf,
                              const KeyOf& keyOf) {
     struct Entry {
         openvdb::Coord cell;
