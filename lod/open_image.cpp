@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "isowave/error.h"
@@ -24,8 +25,20 @@ struct ImagePlan {
 // With as many digits as tell float32 values apart, so that --label takes what is shown.
 std::string labelList(const std::vector<float>& values) { return fmt::format("{}", fmt::join(values, ", ")); }
 
+bool areWhole(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return v == std::floor(v); });
+}
+
+// Few values, none below 0, all of them whole: label images are stored as floating-point numbers too.
 bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
-    return image.integral && statistics.low >= 0 && !statistics.distinct.empty();
+    return statistics.low >= 0 && !statistics.distinct.empty() &&
+           (image.integral || areWhole(statistics.distinct));
+}
+
+// What else may be meant where no iso-value is given.
+const char* labelAdvice(const Image& image, const ImageStatistics& statistics) {
+    const bool whole = image.integral || (!statistics.distinct.empty() && areWhole(statistics.distinct));
+    return whole ? "; if they are labels, choose one with --label" : "";
 }
 
 // Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
@@ -83,8 +96,8 @@ ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const s
     else if (looksLikeLabels(image, statistics) && !options.iso)
         plan = {InputReport::Kind::labels, 0.5, FitMethod::mask};
     else if (!options.iso)
-        throw UsageError(
-            fmt::format("{}: --iso is missing; values run from {}", name, rangeText(statistics)));
+        throw UsageError(fmt::format("{}: --iso is missing; values run from {}{}", name,
+                                     rangeText(statistics), labelAdvice(image, statistics)));
     else
         plan = {InputReport::Kind::greyImage, 0, FitMethod::distance};
 

@@ -94,6 +94,12 @@ void declareImage(OptionList& options, SolidOptions& solid) {
                   });
     options.value("--header-bytes", "N", "0", "headerless image: bytes to skip at the start",
                   [&](const std::string& v) { raw(solid).headerBytes = integer(v, 0, kHuge); });
+    options.value("--volume", "N", "",
+                  "file of several volumes (4D NIfTI, layers of a .seg.nrrd): which, 0 is the first",
+                  [&](const std::string& v) { solid.image.volume = integer(v, 0, kHuge); });
+    options.value("--nan", "V", "",
+                  "what voxels that are NaN, not measured, are taken as; else they are refused",
+                  [&](const std::string& v) { solid.image.nan = static_cast<float>(number(v)); });
     options.value("--series", "ID", "", "DICOM folder with several series: a part of its UID or description",
                   [&](const std::string& v) { solid.image.series = v; });
 }
