@@ -33,7 +33,7 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
     const RawLayout raw = o.image.raw.value_or(RawLayout());
     const KindOption table[] = {
         {"--iso", o.iso.has_value(), true, false, true},
-        {"--label", o.label.has_value(), true, false, false},
+        {"--label", o.label.has_value() || !o.labels.empty(), true, false, false},
         {"--invert", o.invert, true, false, true},
         {"--open-border", o.openBorder, true, false, false},
         {"--voxels", o.voxels.has_value(), false, true, false},

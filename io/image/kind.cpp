@@ -33,10 +33,10 @@ bool isHeaderFormat(FileKind kind) {
 
 FileKind kindByName(const fs::path& path) {
     static const std::map<std::string, FileKind> kinds = {
-        {".nrrd", FileKind::nrrd},  {".nhdr", FileKind::nrrd}, {".mha", FileKind::meta},
-        {".mhd", FileKind::meta},   {".nii", FileKind::nifti}, {".tif", FileKind::tiff},
-        {".tiff", FileKind::tiff},  {".png", FileKind::png},   {".dcm", FileKind::dicom},
-        {".dicom", FileKind::dicom}};
+        {".nrrd", FileKind::nrrd}, {".nhdr", FileKind::nrrd}, {".mha", FileKind::meta},
+        {".mhd", FileKind::meta},  {".mgh", FileKind::mgh},   {".mgz", FileKind::mgh},
+        {".nii", FileKind::nifti}, {".tif", FileKind::tiff},  {".tiff", FileKind::tiff},
+        {".png", FileKind::png},   {".dcm", FileKind::dicom}, {".dicom", FileKind::dicom}};
     const std::string name = toLower(path.filename().string());
     if (name.ends_with(".nii.gz")) return FileKind::nifti;
     const auto found = kinds.find(toLower(path.extension().string()));

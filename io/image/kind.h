@@ -5,7 +5,7 @@
 
 namespace isowave::imageio {
 
-enum class FileKind { none, nrrd, meta, nifti, tiff, png, dicom };
+enum class FileKind { none, nrrd, meta, nifti, mgh, tiff, png, dicom };
 
 // By the extension alone, in capitals too; the file need not be there.
 FileKind kindByName(const std::filesystem::path& path);

@@ -6,12 +6,14 @@
 #include <cctype>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "io/image/check.h"
 #include "io/image/dicom.h"
 #include "io/image/fill_nan.h"
 #include "io/image/formats/foreign.h"
 #include "io/image/formats/metaimage.h"
+#include "io/image/formats/mgh.h"
 #include "io/image/formats/nifti.h"
 #include "io/image/formats/nrrd.h"
 #include "io/image/itk_reader.h"
@@ -86,13 +88,14 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (options.raw) return openRaw(path, options);
     const FileKind kind = kindOf(path);
     if (kind == FileKind::nifti) return openStored(path, readNiftiHeader(path), options);
+    if (kind == FileKind::mgh) return openStored(path, readMghHeader(path), options);
     if (kind == FileKind::nrrd) return openStored(path, readNrrdHeader(path), options);
     if (kind == FileKind::meta) return openStored(path, readMetaHeader(path), options);
     if (kind == FileKind::none)
-        throw InputError(name,
-                         foreignText(path).value_or(
-                             "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for "
-                             "headerless voxels give their size and type"));
+        throw InputError(
+            name, foreignText(path).value_or(
+                      "is of no known image format (NIfTI, NRRD, MetaImage, MGH, TIFF, PNG, DICOM); for "
+                      "headerless voxels give their size and type"));
     return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path);
 }
 
@@ -108,10 +111,12 @@ void checkAxes(const std::string& name, const Header& header) {
 
 // Formats that hold one volume a file do not look at the option.
 void refuseVolume(const std::string& name, const Header& header, const ImageReadOptions& options) {
-    if (options.volume && header.format != "NIfTI" && header.format != "NRRD" && header.format != "MetaImage")
-        throw InputError(name, fmt::format("is {}; --volume chooses among the volumes of a NIfTI, NRRD or "
-                                           "MetaImage file; leave it out",
-                                           header.format));
+    static const std::set<std::string> formats = {"NIfTI", "NRRD", "MetaImage", "MGH"};
+    if (options.volume && !formats.contains(header.format))
+        throw InputError(name,
+                         fmt::format("is {}; --volume chooses among the volumes of a NIfTI, NRRD, MGH or "
+                                     "MetaImage file; leave it out",
+                                     header.format));
 }
 
 }  // namespace

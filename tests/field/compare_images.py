@@ -70,7 +70,9 @@ def by_nibabel(path):
         if header['sform_code'] <= 0 and header['qform_code'] <= 0:  # nibabel centres and mirrors; NIfTI's method 1 does not
             affine, note = np.diag([*header.get_zooms()[:3], 1.0]), 'no orientation: method 1'
         affine[:3] *= {1: 1e3, 3: 1e-3}.get(int(header['xyzt_units']) & 7, 1.0)
-    values = np.asanyarray(image.dataobj) if image.ndim == 3 else None
+    values = np.asanyarray(image.dataobj)
+    while values.ndim > 3:
+        values = values[..., 0]
     return Truth(size, RAS2LPS @ affine[:3, :3], RAS2LPS @ affine[:3, 3], values, note)
 
 
@@ -187,18 +189,18 @@ def differences(info, truth):
     return found
 
 
-def mesh_complaint(options, path, info):
+def mesh_complaint(options, path, info, volume):
     "whether the box of a mesh at the middle of the range lies in the image's, a voxel beyond it allowed"
     low, high = info['range']
     if np.prod(info['dimensions']) > 1e6 or low is None or high is None or low == high:
         return ''
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, 'mesh.off')
-        code, _, _ = run(options, 'mesh', path, '--iso', repr((low + high) / 2), '-o', out)
+        code, _, _ = run(options, 'mesh', path, *volume, '--iso', repr((low + high) / 2), '-o', out)
         if code != 0:
             return '' if code in (1, 2, 3) else f'mesh ends with {code}'
         with open(out) as file:
-            words = file.read().split()
+            words = [word for line in file if not line.startswith('#') for word in line.split()]
         points = np.array(words[4:4 + 3 * int(words[1])], float).reshape(-1, 3)
     step, origin = place_of(info)
     box, edge = corners(info['dimensions'], step, origin), np.abs(step).sum(1)
@@ -207,7 +209,11 @@ def mesh_complaint(options, path, info):
 
 
 def judge(options, path, kind):
+    volume = []
     code, out, err = run(options, 'info', path, '--json', '-')
+    if code == 3 and '--volume' in err:  # of several the first one
+        volume = ['--volume', '0']
+        code, out, err = run(options, 'info', path, '--json', '-', *volume)
     lines = [line for line in err.replace('\r', '\n').splitlines() if line.strip()]
     if code in (2, 3):
         said = lines[-1] if lines else ''
@@ -221,11 +227,11 @@ def judge(options, path, kind):
     if info.get('kind') != 'image':
         return 'alone', f"read as {info.get('kind')}"
     truth, said = truth_of(path, kind)
-    complaint = mesh_complaint(options, path, info) if options.mesh else ''
+    complaint = mesh_complaint(options, path, info, volume) if options.mesh else ''
     if truth is None:
         return ('DIFFERS', complaint) if complaint else ('alone', said)
     found = differences(info, truth) + ([complaint] if complaint else [])
-    return ('DIFFERS', '; '.join(found)) if found else ('same', truth.note)
+    return ('DIFFERS', '; '.join(found)) if found else ('same', truth.note + (' volume 0' if volume else ''))
 
 
 def main():

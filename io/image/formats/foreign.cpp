@@ -165,7 +165,6 @@ constexpr Foreign kForeign[] = {
      "make a closed mesh of it first, for example by Poisson reconstruction in MeshLab"},
     {" .vtk .vti .vts .vtr ", "a file of VTK", "save it as .mha or .ply in ParaView or 3D Slicer"},
     {" .mnc .mnc2 ", "a MINC image", "convert it: mnc2nii {0} {1}.nii"},
-    {" .mgz .mgh ", "a FreeSurfer image", "convert it: mri_convert {0} {1}.nii.gz"},
     {" .brik .head ", "an AFNI image", "convert it: 3dAFNItoNIFTI -prefix {1}.nii {0}"},
     {" .par .v ", "a scan in a vendor's format", "convert it: dcm2niix {0}"},
     {" .h5 .hdf5 .hdf .he5 .nwb .n5 ", "an HDF5 file",

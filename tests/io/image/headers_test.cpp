@@ -417,6 +417,69 @@ TEST_F(Headers, DistanceUnitsOfMetaImageCount) {
     EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("lengths are in um")));
 }
 
+// ---- MGH
+
+// 2 x 4 x 6 voxels; c_ras is where voxel (1, 2, 3), half the size, lies.
+TEST_F(Headers, MghImagesLieAroundTheirMiddle) {
+    std::string header(284, '\0');
+    header.replace(0, 30, bytes<std::int32_t>({1, 2, 4, 6, 1, 4, 0}, true) + bytes<std::int16_t>({1}, true));
+    header.replace(30, 60, bytes<float>({0.5, 1, 2, -1, 0, 0, 0, 0, -1, 0, 1, 0, 10, 20, 30}, true));
+    std::vector<std::int16_t> values(48);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int16_t>(i);
+    const std::string file = header + bytes(values, true);
+    for (const char* name : {"a.mgh", "a.mgz"}) {
+        const Image image = readImage(put(folder / name, name[4] == 'z' ? gzip(file) : file));
+        EXPECT_EQ(image.format, "MGH");
+        EXPECT_THAT(image.indexToWorld({1, 2, 3}), ElementsAre(-10, -20, 30)) << name;
+        expectStep(image, 0, {0.5, 0, 0});
+        expectStep(image, 1, {0, 0, -1});
+        expectStep(image, 2, {0, -2, 0});
+        EXPECT_EQ(image.values[47], 47);
+    }
+    for (std::size_t length = 1; length < file.size(); ++length)
+        EXPECT_NE(refusal(put(folder / "cut.mgh", file.substr(0, length))), "") << length;
+}
+
+// ---- formats that are not read
+
+TEST_F(Headers, ForeignFilesAreNamedWithWhatToDo) {
+    const auto expect = [&](const std::string& name, const std::string& content, const std::string& part) {
+        EXPECT_THAT(refusal(put(folder / name, content)), HasSubstr(part)) << name;
+    };
+    std::string mrc(1024 + 64, '\0');
+    mrc.replace(0, 16, bytes<std::int32_t>({4, 3, 2, 1}));
+    mrc.replace(28, 24, bytes<std::int32_t>({4, 3, 2}) + bytes<float>({6, 6, 8}));
+    mrc.replace(92, 4, bytes<std::int32_t>({16}));
+    mrc.replace(208, 6, "MAP DD");
+    expect("a.mrc", mrc, "--size 4x3x2 --type int16 --header-bytes 1040 --spacing 1.5x2x4");
+    expect("a.rec", mrc, "is an MRC map");
+    std::string npy = "\x93NUMPY\x01" + std::string("\0\x76\0", 3) +
+                      "{'descr': '>u2', 'fortran_order': False, 'shape': (2, 3, 4), }";
+    npy.resize(128 + 48, ' ');
+    expect("a.npy", npy, "--size 4x3x2 --type uint16 --header-bytes 128 --endian big");
+    std::string inr =
+        "#INRIMAGE-4#{\nXDIM=4\nYDIM=3\nZDIM=2\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=decm\n"
+        "VX=0.5\nVY=1\nVZ=2\n";
+    inr.resize(252, '\n');
+    expect("a.inr", inr + "##}\n" + std::string(24, 'x'),
+           "--size 4x3x2 --type uint8 --header-bytes 256 --spacing 0.5x1x2");
+    expect("part.step", "ISO-10303-21;", "gmsh");
+    expect("part.3mf", "PK", "assimp export");
+    expect("b.mnc", "x", "mnc2nii");
+    expect("b.zip", "PK", "unzip");
+    expect("b.h5", "x", "h5dump");
+    expect("b.raw.gz", "x", "gunzip");
+    expect("b.am", "# AmiraMesh", "NRRD");
+    expect("b.vti", "<VTKFile>", "ParaView");
+    expect("b.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", "meshio convert");
+    fs::create_directory(folder / "bmp");
+    put(folder / "bmp" / "1.bmp", "BM");
+    EXPECT_THAT(refusal(folder / "bmp"), AllOf(HasSubstr("holds 1 slices as .bmp"), HasSubstr("mogrify")));
+    fs::create_directory(folder / "a.zarr");
+    put(folder / "a.zarr" / ".zarray", "{}");
+    EXPECT_THAT(refusal(folder / "a.zarr"), HasSubstr("is a Zarr array"));
+}
+
 // ---- any format
 
 TEST_F(Headers, ContentWinsOverAWrongName) {
