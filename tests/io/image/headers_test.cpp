@@ -202,6 +202,17 @@ TEST_F(Headers, EveryNiftiTypeIsReadInBothOrdersAndCompressed) {
     }
 }
 
+// The NIfTI library takes the plain file for the compressed one.
+TEST_F(Headers, ACompressedFileIsReadBesideAPlainOneOfItsName) {
+    NiftiFile file;
+    file.sformCode = 1;
+    file.voxels = bytes<std::int16_t>({0, 1, 2, 3, 4, 5, 6, 7});
+    put(folder / "a.nii.gz", gzip(file.file()));
+    file.voxels = bytes<std::int16_t>({9, 9, 9, 9, 9, 9, 9, 9});
+    put(folder / "a.nii", file.file());
+    EXPECT_THAT(readImage(folder / "a.nii.gz").values, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+}
+
 TEST_F(Headers, APairIsReadByEitherName) {
     NiftiFile file;
     file.pair = true;
