@@ -71,6 +71,8 @@ float voxelOfLabel(const Image& image, const std::string& name, double label) {
     return voxel(k);
 }
 
+bool asksForLabels(const SolidOptions& options) { return options.label || !options.labels.empty(); }
+
 void requireLabel(const ImageStatistics& statistics, const std::string& name, double label) {
     if (!statistics.found)
         throw InputError(name, statistics.distinct.empty()
@@ -82,9 +84,7 @@ void requireLabel(const ImageStatistics& statistics, const std::string& name, do
 
 ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const std::string& name,
                   const SolidOptions& options, const Progress& progress) {
-    const bool labels = options.label || !options.labels.empty();
-    if (labels && options.iso) throw UsageError("--label and --iso exclude each other; give one of them");
-    if (labels) return {InputReport::Kind::labels, 0.5, FitMethod::mask};
+    if (asksForLabels(options)) return {InputReport::Kind::labels, 0.5, FitMethod::mask};
     if (statistics.low == statistics.high)
         throw InputError(name,
                          fmt::format("every voxel has the value {:g}; there is no surface", statistics.low));
@@ -171,6 +171,8 @@ ImageStatistics takeLabels(ImageStream& stream, const std::string& name, const s
 
 SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions& options,
                  const Progress& progress) {
+    if (asksForLabels(options) && options.iso)
+        throw UsageError("--label and --iso exclude each other; give one of them");
     SeenImage seen;
     if (!options.labels.empty()) {
         seen.statistics = takeLabels(stream, name, options.labels, progress);
