@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "isowave/error.h"
@@ -24,8 +25,20 @@ struct ImagePlan {
 // With as many digits as tell float32 values apart, so that --label takes what is shown.
 std::string labelList(const std::vector<float>& values) { return fmt::format("{}", fmt::join(values, ", ")); }
 
+bool areWhole(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return v == std::floor(v); });
+}
+
+// Few values, none below 0, all of them whole: label images are stored as floating-point numbers too.
 bool looksLikeLabels(const Image& image, const ImageStatistics& statistics) {
-    return image.integral && statistics.low >= 0 && !statistics.distinct.empty();
+    return statistics.low >= 0 && !statistics.distinct.empty() &&
+           (image.integral || areWhole(statistics.distinct));
+}
+
+// What else may be meant where no iso-value is given.
+const char* labelAdvice(const Image& image, const ImageStatistics& statistics) {
+    const bool whole = image.integral || (!statistics.distinct.empty() && areWhole(statistics.distinct));
+    return whole ? "; if they are labels, choose one with --label" : "";
 }
 
 // Voxels are kept as float32. From 2^24 on it leaves whole numbers out, so labels of a wider type that were
@@ -58,21 +71,20 @@ float voxelOfLabel(const Image& image, const std::string& name, double label) {
     return voxel(k);
 }
 
-ImagePlan planForLabel(const ImageStatistics& statistics, const std::string& name, double label) {
+bool asksForLabels(const SolidOptions& options) { return options.label || !options.labels.empty(); }
+
+void requireLabel(const ImageStatistics& statistics, const std::string& name, double label) {
     if (!statistics.found)
         throw InputError(name, statistics.distinct.empty()
                                    ? fmt::format("no voxel has the value {}; values run from {:g} to {:g}",
                                                  label, statistics.low, statistics.high)
                                    : fmt::format("no voxel has the label {}; labels found: {}", label,
                                                  labelList(statistics.distinct)));
-    return {InputReport::Kind::labels, 0.5, FitMethod::mask};
 }
 
 ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const std::string& name,
                   const SolidOptions& options, const Progress& progress) {
-    if (options.label && options.iso)
-        throw UsageError("--label and --iso exclude each other; give one of them");
-    if (options.label) return planForLabel(statistics, name, *options.label);
+    if (asksForLabels(options)) return {InputReport::Kind::labels, 0.5, FitMethod::mask};
     if (statistics.low == statistics.high)
         throw InputError(name,
                          fmt::format("every voxel has the value {:g}; there is no surface", statistics.low));
@@ -83,8 +95,8 @@ ImagePlan planFor(const Image& image, const ImageStatistics& statistics, const s
     else if (looksLikeLabels(image, statistics) && !options.iso)
         plan = {InputReport::Kind::labels, 0.5, FitMethod::mask};
     else if (!options.iso)
-        throw UsageError(
-            fmt::format("{}: --iso is missing; values run from {}", name, rangeText(statistics)));
+        throw UsageError(fmt::format("{}: --iso is missing; values run from {}{}", name,
+                                     rangeText(statistics), labelAdvice(image, statistics)));
     else
         plan = {InputReport::Kind::greyImage, 0, FitMethod::distance};
 
@@ -122,7 +134,8 @@ InputReport reportOf(const std::string& name, const Image& image, const ImagePla
     report.spacing = image.spacing();
     report.range = {statistics.low, statistics.high};
     report.label = options.label;
-    if (!options.label) report.iso = plan.iso;
+    report.labels = options.labels;
+    if (!options.label && options.labels.empty()) report.iso = plan.iso;
     report.inverted = options.invert;
     report.openBorder = options.openBorder;
     report.origin = image.indexToWorld.origin;
@@ -138,11 +151,37 @@ struct SeenImage {
     std::optional<float> label;  // as a voxel has it
 };
 
+// Each of several labels must be there. Leaves a stream that is 1 where one of them is; returns what it was before.
+ImageStatistics takeLabels(ImageStream& stream, const std::string& name, const std::vector<double>& labels,
+                           const Progress& progress) {
+    std::vector<float> voxels;
+    ImageStatistics statistics;
+    for (const double label : labels) {
+        const float voxel = voxels.emplace_back(voxelOfLabel(stream.header(), name, label));
+        if (voxels.size() == 1 || statistics.distinct.empty())
+            statistics = statisticsOf(stream, voxel, progress);
+        else
+            statistics.found = std::find(statistics.distinct.begin(), statistics.distinct.end(), voxel) !=
+                               statistics.distinct.end();
+        requireLabel(statistics, name, label);
+    }
+    stream.takeAsMask(std::move(voxels));
+    return statistics;
+}
+
 SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions& options,
                  const Progress& progress) {
+    if (asksForLabels(options) && options.iso)
+        throw UsageError("--label and --iso exclude each other; give one of them");
     SeenImage seen;
-    if (options.label) seen.label = voxelOfLabel(stream.header(), name, *options.label);
-    seen.statistics = statisticsOf(stream, seen.label, progress);
+    if (!options.labels.empty()) {
+        seen.statistics = takeLabels(stream, name, options.labels, progress);
+        seen.label = 1.0f;  // of the mask
+    } else {
+        if (options.label) seen.label = voxelOfLabel(stream.header(), name, *options.label);
+        seen.statistics = statisticsOf(stream, seen.label, progress);
+        if (options.label) requireLabel(seen.statistics, name, *options.label);
+    }
     for (const std::string& warning : stream.header().warnings) progress.say(warning);
     seen.stream.emplace(std::move(stream));
     return seen;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "io/image/formats/foreign.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "isowave/openvdb.h"
@@ -32,7 +33,7 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
     const RawLayout raw = o.image.raw.value_or(RawLayout());
     const KindOption table[] = {
         {"--iso", o.iso.has_value(), true, false, true},
-        {"--label", o.label.has_value(), true, false, false},
+        {"--label", o.label.has_value() || !o.labels.empty(), true, false, false},
         {"--invert", o.invert, true, false, true},
         {"--open-border", o.openBorder, true, false, false},
         {"--voxels", o.voxels.has_value(), false, true, false},
@@ -44,6 +45,8 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
         {"--spacing", o.image.spacing.has_value(), true, false, false},
         {"--endian", o.image.raw && raw.type.empty() && raw.headerBytes == 0, true, false, false},
         {"--header-bytes", raw.headerBytes != 0, true, false, false},
+        {"--volume", o.image.volume.has_value(), true, false, false},
+        {"--nan", o.image.nan.has_value(), true, false, false},
         {"--series", o.image.series.has_value(), true, false, false},
         {"--grid", o.grid.has_value(), false, false, true},
     };
@@ -91,7 +94,7 @@ InputKind kindOf(const fs::path& path, const SolidOptions& options) {
         return wavelets::isPyramidFile(path) ? InputKind::pyramid : InputKind::vdb;
     if (isMeshPath(path)) return InputKind::mesh;
     if (isImagePath(path)) return InputKind::image;
-    if (hasExtension(path, ".gz")) throw InputError(path.string(), "is compressed by gzip; gunzip it first");
+    if (const auto text = imageio::foreignText(path)) throw InputError(path.string(), *text);
     throw InputError(path.string(),
                      "is neither an image, a mesh nor a .vdb by its name; a headerless image needs "
                      "--size, --type and --spacing");

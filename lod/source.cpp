@@ -94,6 +94,7 @@ Fields fieldsOfLattice(const InputReport& input) {
     list.putIf("spacing", input.spacing);
     if (input.range) list.put("range", {finite((*input.range)[0]), finite((*input.range)[1])});
     list.putIf("label", input.label);
+    if (!input.labels.empty()) list.put("labels", input.labels);
     list.putIf("iso", input.iso);
     list.putIf("inverted", input.inverted);
     list.putIf("open_border", input.openBorder);
@@ -206,6 +207,7 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
     input->range = valueOf<std::array<double, 2>>(json, "range");
     input->iso = valueOf<double>(json, "iso");
     input->label = valueOf<double>(json, "label");
+    input->labels = valueOf<std::vector<double>>(json, "labels").value_or(std::vector<double>());
     input->inverted = valueOf<bool>(json, "inverted");
     input->openBorder = valueOf<bool>(json, "open_border");
     input->origin = valueOf<std::array<double, 3>>(json, "origin");

@@ -1,4 +1,4 @@
-// Images: voxels with spacing, orientation and origin, as ITK reads them. No ITK type appears here.
+// Images: voxels with spacing, orientation and origin. No ITK type appears here.
 //
 //   Image head = readImage("cranium.nhdr");                        // NIfTI, NRRD, MetaImage, TIFF, DICOM
 //   Image scan = readImage("dicom/", {.series = "1.2.840"});       // a folder of slices
@@ -6,7 +6,7 @@
 //                                         .raw = RawLayout{.size = {256, 256, 108}, .type = "int16"}});
 //
 // World coordinates are millimetres, LPS (x to the patient's left, y to the back, z to the head), as in ITK
-// and DICOM; NIfTI's RAS is turned by ITK.
+// and DICOM; NIfTI's RAS and the spaces of NRRD are turned.
 #pragma once
 
 #include <array>
@@ -68,6 +68,11 @@ struct ImageReadOptions {
     std::optional<RawLayout> raw = {};
     // Which series of a DICOM folder: any unique part of its UID or of its description.
     std::optional<std::string> series = {};
+    // Which volume of a file that holds several, 0 the first: times of a 4D NIfTI, layers of a .seg.nrrd. Without it such
+    // a file is refused.
+    std::optional<std::int64_t> volume = {};
+    // What voxels that are NaN, "not measured", are taken as. Without it they are refused.
+    std::optional<float> nan = {};
     // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
     // machine has. A header that asks for more is refused before anything is allocated.
     std::int64_t memoryLimit = 0;
@@ -75,7 +80,7 @@ struct ImageReadOptions {
 
 // Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
 // DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty
-// or truncated file, a 2D image, a time series, RGB or vector voxels, NaN or infinite voxels (says where),
+// or truncated file, a 2D image, several volumes of which none is chosen, RGB or vector voxels, NaN or infinite voxels (says where),
 // spacing <= 0, a direction matrix that cannot be inverted, a folder with several series (lists them), a size
 // that memory cannot hold. Throws Cancelled when progress says so.
 ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
@@ -84,8 +89,8 @@ ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageRea
 // Header only: everything but `values`. Truncation is found where file sizes show it.
 ISOWAVE_EXPORT Image readImageHeader(const std::filesystem::path& path, const ImageReadOptions& options = {});
 
-// The files beside an NRRD or MetaImage header that hold its voxels: one, a list, or what a pattern with a number
-// fits. Nothing when the voxels are in the file itself, for other formats, and for a header that cannot be read.
+// The files beside an NRRD, MetaImage or NIfTI header that hold its voxels: one, a list, or what a pattern with a
+// number names; for a NIfTI pair the other file. Nothing when the voxels are in the file itself, for other formats, and for a header that cannot be read.
 ISOWAVE_EXPORT std::vector<std::filesystem::path> voxelFilesOf(const std::filesystem::path& path);
 
 // Whether a path looks like something readImage() reads (by extension, or a folder).

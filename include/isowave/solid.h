@@ -38,6 +38,7 @@ struct SolidOptions {
     // Images: inside where the value is above it (HU for CT); level sets: below, world units.
     std::optional<double> iso = {};
     std::optional<double> label = {};  // images: inside where the value is this one
+    std::vector<double> labels = {};   // images: inside where the value is one of these; instead of label
     bool invert = false;               // images, level sets: the other side
     bool openBorder = false;           // images: meshes end open at the image's border instead of with a cap
 
@@ -75,6 +76,7 @@ struct InputReport {
     std::optional<std::array<double, 3>> spacing;           // of voxels, world units (mm for images)
     std::optional<std::array<double, 2>> range;             // least and greatest value of an image
     std::optional<double> iso, label;
+    std::vector<double> labels;  // where several were asked for
     std::optional<bool> inverted, openBorder;
     std::optional<std::array<double, 3>> origin;  // world position of voxel (0,0,0), LPS
     std::optional<std::array<std::array<double, 3>, 3>>

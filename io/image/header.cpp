@@ -4,7 +4,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -93,6 +95,9 @@ class InflateStream {
     z_stream z_{};
 };
 
+// Deflate's longest match, 258 bytes, takes two bits at least: 1032 to 1 (zlib's technical details).
+constexpr std::int64_t kBestRatio = 1032;
+
 // The last 4 bytes of a gzip stream are its length modulo 2^32. If they say what is needed, the file is whole
 // but for a chance of 2^-32, and a large file need not be inflated twice.
 bool gzipEndsAt(const fs::path& path, std::int64_t bytes) {
@@ -124,12 +129,73 @@ void checkPlain(const fs::path& path, std::int64_t start, std::int64_t needed, c
 
 void checkDeflated(const fs::path& path, std::int64_t start, std::int64_t needed,
                    const std::string& promise) {
+    const std::int64_t packed = static_cast<std::int64_t>(fs::file_size(path)) - start;
+    if (needed / kBestRatio > packed)
+        throw InputError(path.string(),
+                         fmt::format("{} ({}) but the file holds {} compressed, too few for that; it is "
+                                     "truncated or its header is wrong",
+                                     promise, bytesText(static_cast<double>(needed)),
+                                     bytesText(static_cast<double>(std::max<std::int64_t>(packed, 0)))));
     if (gzipEndsAt(path, needed)) return;
     std::ifstream file(path, std::ios::binary);
     file.seekg(start);
     const Inflated inflated = InflateStream().measure(file);
     if (inflated.bytes < needed || !inflated.finished)
         throwTruncated(path, promise, needed, std::min(inflated.bytes, needed));
+}
+
+namespace {
+
+// A pattern with its number: %d, %03d, %5i. Nothing else may stand behind the %.
+std::string withNumber(const std::string& file, const std::string& pattern, std::int64_t number) {
+    const std::size_t percent = pattern.find('%');
+    const std::size_t letter = pattern.find_first_not_of("0123456789", percent + 1);
+    const bool good = letter != std::string::npos && std::strchr("diu", pattern[letter]) &&
+                      letter - percent <= 3 && pattern.find('%', letter) == std::string::npos;
+    if (!good)
+        throw InputError(file,
+                         fmt::format("'{}' should name its files of voxels; expected one number such as "
+                                     "%03d in it",
+                                     oneLine(pattern)));
+    const std::string width = pattern.substr(percent + 1, letter - percent - 1);
+    std::string digits = std::to_string(number);
+    const std::size_t least = width.empty() ? 0 : static_cast<std::size_t>(std::stoi(width));
+    if (digits.size() < least) digits.insert(0, least - digits.size(), width[0] == '0' ? '0' : ' ');
+    return pattern.substr(0, percent) + digits + pattern.substr(letter + 1);
+}
+
+std::optional<std::int64_t> wholeNumber(const std::string& word) {
+    std::int64_t value = 0;
+    const char* end = word.data() + word.size();
+    const auto parsed = std::from_chars(word.data(), end, value);
+    return parsed.ptr == end && parsed.ec == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> numberedNames(const std::string& file, const std::string& text,
+                                       std::optional<std::int64_t> count) {
+    constexpr std::int64_t kMost = 1'000'000;
+    std::string pattern = trimmed(text);
+    std::vector<std::int64_t> range;
+    for (std::size_t blank; (blank = pattern.find_last_of(" \t")) != std::string::npos;) {
+        const auto value = wholeNumber(pattern.substr(blank + 1));
+        if (!value) break;
+        range.insert(range.begin(), *value);
+        pattern = trimmed(pattern.substr(0, blank));
+    }
+    if (range.empty() && count) range = {1, *count};
+    const std::int64_t step = range.size() > 2 ? range[2] : 1;
+    const bool good =
+        range.size() >= 2 && step > 0 && range[0] >= 0 && range[0] <= range[1] && range[1] < kMost * step;
+    if (!good)
+        throw InputError(file,
+                         fmt::format("'{}' should name its files of voxels; expected a pattern, the first "
+                                     "number and the last",
+                                     oneLine(text)));
+    std::vector<std::string> names;
+    for (std::int64_t n = range[0]; n <= range[1]; n += step) names.push_back(withNumber(file, pattern, n));
+    return names;
 }
 
 void requireFile(const fs::path& header, const fs::path& data) {

@@ -1,13 +1,5 @@
-// What ITK's readers hide, read from the headers themselves before ITK reads the file, and what the checks of
-// NRRD, MetaImage and NIfTI share.
-//
-// NrrdIO, MetaIO, libtiff and the NIfTI library fill what is missing with zeros, take absolute values,
-// allocate whatever a header asks for, abort, or print to the terminal. Each check reads its header just far
-// enough to know how many bytes of voxels it promises and whether the file holds them. What it does not
-// understand is left to ITK.
-//
-// checkNrrd(), checkMetaImage(), checkNifti() throw InputError for sizes whose product overflows, voxels that
-// the file does not hold, a data file that is missing, axes without length or that hold infinities.
+// What the readers of NRRD, MetaImage and NIfTI headers share: numbers and names in text, and whether files hold what
+// a header promises.
 #pragma once
 
 #include <array>
@@ -17,21 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image/plain.h"
-#include "io/image/source.h"
-
 namespace isowave::imageio {
-
-struct HeaderFacts {
-    std::vector<std::int64_t>
-        size;  // of every axis that the file states, the range axis of a vector image too
-    std::optional<ValueType> storedType;
-    std::optional<bool> integral;
-    double slope = 1, intercept = 0;                  // values = slope * stored + intercept
-    bool onePiece = true;                             // cannot be read a few slices at a time
-    std::optional<PlainData> plain;                   // where one file holds the voxels as they are
-    std::optional<std::array<double, 3>> badSpacing;  // as written, when an entry is <= 0 or not finite
-};
 
 std::string trimmed(const std::string& text);
 
@@ -59,6 +37,12 @@ void checkPlain(const std::filesystem::path& path, std::int64_t start, std::int6
 // The same for a zlib or gzip stream that begins there; its end and checksum must be there too.
 void checkDeflated(const std::filesystem::path& path, std::int64_t start, std::int64_t needed,
                    const std::string& promise);
+
+// The names of "slice%03d.raw 1 90 2": numbers 1, 3, ... 89 in the place of %03d. Behind the pattern stand the first
+// number, the last one and, if it is not 1, the step; what follows means nothing here. count: the last number, counted
+// from 1, of a pattern without numbers. Throws InputError for a pattern that is none and for more than a million names.
+std::vector<std::string> numberedNames(const std::string& file, const std::string& text,
+                                       std::optional<std::int64_t> count);
 
 // Throws InputError unless `data`, which `header` names, is a file.
 void requireFile(const std::filesystem::path& header, const std::filesystem::path& data);

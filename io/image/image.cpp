@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "io/image/check.h"
+#include "io/image/formats/metaimage.h"
+#include "io/image/formats/nifti.h"
+#include "io/image/formats/nrrd.h"
 #include "io/image/kind.h"
-#include "io/image/metaimage.h"
-#include "io/image/nrrd.h"
 #include "io/image/open_source.h"
 #include "isowave/error.h"
 
@@ -21,28 +22,6 @@ std::array<double, 3> Image::spacing() const {
     }
     return result;
 }
-
-namespace {
-
-// Adds the files of `folder` that a pattern such as "slice%03d.raw 1 90 1" fits: what stands before and after
-// its %.
-void addFitting(const fs::path& folder, const std::string& pattern, std::vector<fs::path>& files) {
-    const std::size_t percent = pattern.find('%');
-    const fs::path before = folder / pattern.substr(0, percent);
-    const std::size_t after = pattern.find_first_of("diu", percent), blank = pattern.find(' ', percent);
-    const std::string tail =
-        after == std::string::npos || blank <= after ? "" : pattern.substr(after + 1, blank - after - 1);
-    std::error_code ignored;
-    for (auto entry =
-             fs::directory_iterator(before.parent_path().empty() ? "." : before.parent_path(), ignored);
-         entry != fs::directory_iterator(); entry.increment(ignored)) {
-        const std::string name = entry->path().filename().string();
-        if (name.starts_with(before.filename().string()) && name.ends_with(tail))
-            files.push_back(entry->path());
-    }
-}
-
-}  // namespace
 
 Image readImageHeader(const fs::path& path, const ImageReadOptions& options) {
     return imageOf(openSource(path, options)->header);
@@ -72,19 +51,15 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
 std::vector<fs::path> voxelFilesOf(const fs::path& path) {
     std::vector<std::string> names;
     try {
-        const FileKind kind = kindByName(path);
+        const FileKind kind = kindOf(path);
         if (kind == FileKind::nrrd) names = nrrdVoxelFiles(path);
         if (kind == FileKind::meta) names = metaVoxelFiles(path);
+        if (kind == FileKind::nifti) names = niftiVoxelFiles(path);
     } catch (const InputError&) {
         return {};  // said when it is read
     }
     std::vector<fs::path> files;
-    for (const std::string& name : names) {
-        if (name.find('%') == std::string::npos)
-            files.push_back(path.parent_path() / name);
-        else
-            addFitting(path.parent_path(), name, files);
-    }
+    for (const std::string& name : names) files.push_back(path.parent_path() / name);
     return files;
 }
 

@@ -4,9 +4,6 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
-#include <itkNrrdImageIO.h>
 #include <itkTIFFImageIO.h>
 
 #include <algorithm>
@@ -16,10 +13,8 @@
 
 #include "base/read_file.h"
 #include "io/image/check.h"
+#include "io/image/formats/stored_volume.h"
 #include "io/image/kind.h"
-#include "io/image/metaimage.h"
-#include "io/image/nifti.h"
-#include "io/image/nrrd.h"
 #include "io/image/tiff.h"
 #include "io/picture/png.h"
 #include "isowave/error.h"
@@ -28,10 +23,7 @@ namespace isowave::imageio {
 namespace fs = std::filesystem;
 namespace {
 
-// ~64 MB of the file at a time, where a format can be read in slabs.
-constexpr std::int64_t kSlabBytes = std::int64_t(64) << 20;
-
-// "itk::ERROR: NrrdImageIO(0x55..): Read: ..." without the class, whose address differs from run to run.
+// "itk::ERROR: TIFFImageIO(0x55..): Read: ..." without the class, whose address differs from run to run.
 std::string whatItkSaid(const itk::ExceptionObject& e) {
     std::string text = oneLine(e.GetDescription());
     if (const auto at = text.find("): "); text.starts_with("itk::ERROR") && at != std::string::npos)
@@ -89,13 +81,6 @@ ValueType typeOf(const fs::path& path, const itk::ImageIOBase& io) {
     }
 }
 
-[[noreturn]] void throwNotScalar(const fs::path& path, const std::string& kind, unsigned numbers) {
-    throw InputError(path.string(),
-                     fmt::format("holds {} voxels of {} numbers; expected one number a voxel; convert it "
-                                 "to grey",
-                                 kind, numbers));
-}
-
 void requireScalar(const fs::path& path, const itk::ImageIOBase& io) {
     if (io.GetNumberOfComponents() == 1 && io.GetPixelType() == itk::IOPixelEnum::SCALAR) return;
     std::string kind = io.GetPixelTypeAsString(io.GetPixelType());
@@ -142,11 +127,6 @@ void takePngHeader(const fs::path& path, const Picture& picture, Header& header)
 
 std::string bytesOf(const fs::path& path) { return readFile(path, "a slice"); }
 
-[[noreturn]] void throwFlat(const fs::path& path, std::int64_t x, std::int64_t y, const std::string& remedy) {
-    throw InputError(path.string(),
-                     fmt::format("is a 2D image ({} x {}); expected a volume{}", x, y, remedy));
-}
-
 // What is wrong is said once, in an exception. ITK itself can be told so; the libtiff that it brings along
 // prints a line for every private tag, and its switch, renamed by ITK, is in no header.
 void silence() {
@@ -160,16 +140,7 @@ void silence() {
 itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
     static const bool silent = (silence(), true);
     (void)silent;
-    const FileKind kind = kindOf(path);
-    itk::ImageIOBase::Pointer io;
-    if (kind == FileKind::meta)
-        io = itk::MetaImageIO::New();
-    else if (kind == FileKind::nifti)
-        io = itk::NiftiImageIO::New();
-    else if (kind == FileKind::tiff)
-        io = itk::TIFFImageIO::New();
-    else
-        io = itk::NrrdImageIO::New();
+    const itk::ImageIOBase::Pointer io = itk::TIFFImageIO::New().GetPointer();
     io->SetFileName(path.string());
     return io;
 }
@@ -201,37 +172,15 @@ class FileSource : public VoxelSource {
     itk::ImageIOBase::Pointer io_;
 };
 
-HeaderFacts factsOf(const fs::path& path, const itk::ImageIOBase& io) {
-    if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return checkNrrd(path);
-    if (dynamic_cast<const itk::MetaImageIO*>(&io)) return checkMetaImage(path);
-    if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return checkNifti(path);
-    if (dynamic_cast<const itk::TIFFImageIO*>(&io)) checkTiff(path);
-    return {};
-}
-
-std::string formatOf(const itk::ImageIOBase& io) {
-    if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return "NRRD";
-    if (dynamic_cast<const itk::MetaImageIO*>(&io)) return "MetaImage";
-    if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return "NIfTI";
-    return "TIFF";
-}
-
 // TIFF and PNG say at most how large a pixel is; a voxel is taken to be as high as it is wide.
 void assumeHeight(Header& header) {
     header.hasZSpacing = false;
     header.spacing[2] = header.spacing[0];
 }
 
-// Whether the voxels can be had without ITK: it neither rescales nor rearranges them.
-bool isPlain(const HeaderFacts& facts, const Header& header) {
-    std::int64_t voxels = 1;
-    for (const std::int64_t n : facts.size) voxels *= n;
-    return facts.plain && facts.storedType == header.type && voxels == header.sliceVoxels() * header.size[2];
-}
-
 }  // namespace
 
-SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) {
+SourcePtr openVolumeFile(const fs::path& path) {
     if (kindOf(path) == FileKind::png) {
         Header flat;
         takePngHeader(path, readPngHeader(bytesOf(path), path.string()), flat);
@@ -240,29 +189,14 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     const itk::ImageIOBase::Pointer io = readerFor(path);
     auto source = std::make_unique<FileSource>(path, io);
     Header& header = source->header;
-    const HeaderFacts facts = factsOf(path, *io);
-    if (facts.badSpacing && !options.spacing) {
-        header.spacing = *facts.badSpacing;
-        settleGeometry(path.string(), header, options);  // throws
-    }
+    checkTiff(path);
     reading(path, [&] { io->ReadImageInformation(); });
-    header.format = formatOf(*io);
-    const std::size_t dimensions = facts.size.empty() ? io->GetNumberOfDimensions() : facts.size.size();
+    header.format = "TIFF";
     takeHeader(path, *io, header);
-    if (std::min<std::size_t>(dimensions, io->GetNumberOfDimensions()) < 3 && dimensions < 3)
-        throwFlat(path, header.size[0], header.size[1],
-                  header.format == "TIFF" ? "; give the folder of its slices" : "");
-    if (header.format == "TIFF") assumeHeight(header);
-    header.storedType = facts.storedType;
-    header.integral = facts.integral;
-    header.slope = facts.slope;
-    header.intercept = facts.intercept;
-    if (isPlain(facts, header)) return openPlain(*facts.plain, header);
+    if (io->GetNumberOfDimensions() < 3)
+        throwFlat(path, header.size[0], header.size[1], "; give the folder of its slices");
+    assumeHeight(header);
     source->slicesPerRead = header.size[2];
-    if (!facts.onePiece && io->CanStreamRead())
-        source->slicesPerRead = std::clamp<std::int64_t>(
-            kSlabBytes / (header.sliceVoxels() * static_cast<std::int64_t>(sizeOf(header.type))), 1,
-            header.size[2]);
     return source;
 }
 
@@ -292,9 +226,9 @@ Slice openSlice(const fs::path& path) {
     if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
     if (kindOf(path) == FileKind::png) return openPngSlice(path);
     const itk::ImageIOBase::Pointer io = readerFor(path);
-    factsOf(path, *io);
+    checkTiff(path);
     reading(path, [&] { io->ReadImageInformation(); });
-    Slice slice{formatOf(*io), {}, [io](void* out) { readRegion(*io, 0, 1, out); }};
+    Slice slice{"TIFF", {}, [io](void* out) { readRegion(*io, 0, 1, out); }};
     takeHeader(path, *io, slice.header);
     return slice;
 }
@@ -333,11 +267,10 @@ class SlicesSource : public VoxelSource {
 
 }  // namespace
 
-SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& slices,
-                         const ImageReadOptions& options) {
+SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& slices) {
     const Slice first = openSlice(slices.front());
     if (first.header.size[2] > 1) {  // pages
-        if (slices.size() == 1) return openVolumeFile(slices.front(), options);
+        if (slices.size() == 1) return openVolumeFile(slices.front());
         throw InputError(folder.string(),
                          fmt::format("holds {} TIFF files of several pages; expected slices; give one "
                                      "of the files",

@@ -1,4 +1,4 @@
-// Images that ITK's readers know: NRRD, MetaImage, NIfTI, TIFF, PNG.
+// TIFF volumes, which ITK reads, and folders of TIFF or PNG slices.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,10 @@
 
 namespace isowave::imageio {
 
-// Both throw InputError for what is wrong before voxels are read. A volume whose voxels need no decoding is
-// handed over to openPlain().
-SourcePtr openVolumeFile(const std::filesystem::path& path, const ImageReadOptions& options);
+// Both throw InputError for what is wrong before voxels are read.
+SourcePtr openVolumeFile(const std::filesystem::path& path);
 // slices: TIFF or PNG files, in order.
 SourcePtr openSliceFiles(const std::filesystem::path& folder,
-                         const std::vector<std::filesystem::path>& slices, const ImageReadOptions& options);
+                         const std::vector<std::filesystem::path>& slices);
 
 }  // namespace isowave::imageio

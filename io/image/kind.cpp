@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/image/formats/nifti.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -19,17 +20,23 @@ FileKind kindByContent(const fs::path& path) {
     if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return FileKind::png;
     if (text.compare(0, 4, std::string("II*\0", 4)) == 0 || text.compare(0, 4, std::string("MM\0*", 4)) == 0)
         return FileKind::tiff;
-    return FileKind::none;
+    for (const char* key : {"ObjectType =", "NDims =", "Comment ="})
+        if (text.starts_with(key)) return FileKind::meta;
+    return beginsAsNifti(niftiHeaderOf(path)) ? FileKind::nifti : FileKind::none;
+}
+
+bool isHeaderFormat(FileKind kind) {
+    return kind == FileKind::nifti || kind == FileKind::nrrd || kind == FileKind::meta;
 }
 
 }  // namespace
 
 FileKind kindByName(const fs::path& path) {
     static const std::map<std::string, FileKind> kinds = {
-        {".nrrd", FileKind::nrrd},  {".nhdr", FileKind::nrrd}, {".mha", FileKind::meta},
-        {".mhd", FileKind::meta},   {".nii", FileKind::nifti}, {".tif", FileKind::tiff},
-        {".tiff", FileKind::tiff},  {".png", FileKind::png},   {".dcm", FileKind::dicom},
-        {".dicom", FileKind::dicom}};
+        {".nrrd", FileKind::nrrd}, {".nhdr", FileKind::nrrd}, {".mha", FileKind::meta},
+        {".mhd", FileKind::meta},  {".mgh", FileKind::mgh},   {".mgz", FileKind::mgh},
+        {".nii", FileKind::nifti}, {".tif", FileKind::tiff},  {".tiff", FileKind::tiff},
+        {".png", FileKind::png},   {".dcm", FileKind::dicom}, {".dicom", FileKind::dicom}};
     const std::string name = toLower(path.filename().string());
     if (name.ends_with(".nii.gz")) return FileKind::nifti;
     const auto found = kinds.find(toLower(path.extension().string()));
@@ -38,7 +45,10 @@ FileKind kindByName(const fs::path& path) {
 
 FileKind kindOf(const fs::path& path) {
     const FileKind kind = kindByName(path);
-    return kind == FileKind::none ? kindByContent(path) : kind;
+    if (kind != FileKind::none && !isHeaderFormat(kind)) return kind;
+    const FileKind found = kindByContent(path);
+    const bool wins = kind == FileKind::none || isHeaderFormat(found) || found == FileKind::dicom;
+    return wins && found != FileKind::none ? found : kind;
 }
 
 }  // namespace isowave::imageio

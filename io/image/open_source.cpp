@@ -6,9 +6,16 @@
 #include <cctype>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "io/image/check.h"
 #include "io/image/dicom.h"
+#include "io/image/fill_nan.h"
+#include "io/image/formats/foreign.h"
+#include "io/image/formats/metaimage.h"
+#include "io/image/formats/mgh.h"
+#include "io/image/formats/nifti.h"
+#include "io/image/formats/nrrd.h"
 #include "io/image/itk_reader.h"
 #include "io/image/kind.h"
 #include "io/image/plain.h"
@@ -68,8 +75,10 @@ SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     if (png > 0 && tiff > 0)
         throw InputError(folder.string(),
                          fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
-    if (png + tiff == 0) throw InputError(folder.string(), "is a folder without DICOM, TIFF or PNG slices");
-    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
+    if (png + tiff == 0)
+        throw InputError(folder.string(),
+                         foreignText(folder).value_or("is a folder without DICOM, TIFF or PNG slices"));
+    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff]);
 }
 
 SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
@@ -78,12 +87,16 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
     if (options.raw) return openRaw(path, options);
     const FileKind kind = kindOf(path);
+    if (kind == FileKind::nifti) return openStored(path, readNiftiHeader(path), options);
+    if (kind == FileKind::mgh) return openStored(path, readMghHeader(path), options);
+    if (kind == FileKind::nrrd) return openStored(path, readNrrdHeader(path), options);
+    if (kind == FileKind::meta) return openStored(path, readMetaHeader(path), options);
     if (kind == FileKind::none)
         throw InputError(
-            name,
-            "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
-            "voxels give their size and type");
-    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
+            name, foreignText(path).value_or(
+                      "is of no known image format (NIfTI, NRRD, MetaImage, MGH, TIFF, PNG, DICOM); for "
+                      "headerless voxels give their size and type"));
+    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path);
 }
 
 // Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
@@ -94,6 +107,16 @@ void checkAxes(const std::string& name, const Header& header) {
             throw InputError(name, fmt::format("its size is {}; at most {} voxels along an axis are handled; "
                                                "crop or downsample it",
                                                sizeText(header.size), kMostOnAxis));
+}
+
+// Formats that hold one volume a file do not look at the option.
+void refuseVolume(const std::string& name, const Header& header, const ImageReadOptions& options) {
+    static const std::set<std::string> formats = {"NIfTI", "NRRD", "MetaImage", "MGH"};
+    if (options.volume && !formats.contains(header.format))
+        throw InputError(name,
+                         fmt::format("is {}; --volume chooses among the volumes of a NIfTI, NRRD, MGH or "
+                                     "MetaImage file; leave it out",
+                                     header.format));
 }
 
 }  // namespace
@@ -111,9 +134,10 @@ SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
                          "them out for a folder of slices");
     try {
         SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
+        refuseVolume(name, source->header, options);
         settleGeometry(name, source->header, options);
         checkAxes(name, source->header);
-        return source;
+        return options.nan ? fillNan(std::move(source), *options.nan) : std::move(source);
     } catch (const fs::filesystem_error& e) {
         throw InputError(name, "cannot be read: " + oneLine(e.code().message()));
     }

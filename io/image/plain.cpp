@@ -25,11 +25,15 @@ void reverseEach(char* values, std::int64_t count) {
     for (std::int64_t i = 0; i < count; ++i, values += kBytes) std::reverse(values, values + kBytes);
 }
 
+}  // namespace
+
 void reverseBytes(std::size_t bytesEach, char* values, std::int64_t count) {
     if (bytesEach == 2) reverseEach<2>(values, count);
     if (bytesEach == 4) reverseEach<4>(values, count);
     if (bytesEach == 8) reverseEach<8>(values, count);
 }
+
+namespace {
 
 class PlainSource : public VoxelSource {
   public:

@@ -18,6 +18,9 @@ struct PlainData {
 // REQUIRES: the file holds as many voxels as the header says.
 SourcePtr openPlain(const PlainData& data, const Header& header);
 
+// Turns round the bytes of each of `count` values.
+void reverseBytes(std::size_t bytesEach, char* values, std::int64_t count);
+
 // A headerless file. REQUIRES: options.raw. Throws InputError for an unknown type and for a file that is too
 // short.
 SourcePtr openRaw(const std::filesystem::path& path, const ImageReadOptions& options);

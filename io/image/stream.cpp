@@ -45,6 +45,12 @@ Voxels voxelsOf(ValueType type, const void* values, std::int64_t count) {
 }  // namespace
 
 struct ImageStream::State {
+    // Of one thread.
+    struct Buffers {
+        std::vector<char> voxels;
+        std::vector<std::uint8_t> mask;
+    };
+
     std::string name;
     Image header;
     SourcePtr source;  // null for an image in memory
@@ -54,6 +60,7 @@ struct ImageStream::State {
     std::vector<char> kept;     // ... here
     const void* all = nullptr;  // all voxels, when they are in memory
     bool checked = false;       // the first pass is behind
+    std::vector<float> inMask;  // ascending; not empty: voxels are 1 where they are one of these
     std::mutex mutex;           // guards what follows
     NotFinite notFinite;
     std::int64_t inexact = 0;
@@ -88,7 +95,29 @@ struct ImageStream::State {
         all = kept.data();
     }
 
-    Slab slab(std::int64_t z0, std::int64_t z1, std::vector<char>& buffer) {
+    Slab slab(std::int64_t z0, std::int64_t z1, Buffers& buffers) {
+        const Slab stored = storedSlab(z0, z1, buffers.voxels);
+        return inMask.empty() ? stored : maskOf(stored, buffers.mask);
+    }
+
+    Slab maskOf(const Slab& slab, std::vector<std::uint8_t>& mask) const {
+        const auto in = [&](float v) { return std::binary_search(inMask.begin(), inMask.end(), v); };
+        std::visit(
+            [&](auto values) {
+                mask.resize(values.size());
+                // Neighbours are mostly alike.
+                auto last = values[0];
+                bool inside = in(static_cast<float>(last));
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    if (values[i] != last) inside = in(static_cast<float>(last = values[i]));
+                    mask[i] = inside;
+                }
+            },
+            slab.voxels);
+        return {slab.z0, slab.z1, std::span<const std::uint8_t>(mask), slab.zero && !in(0)};
+    }
+
+    Slab storedSlab(std::int64_t z0, std::int64_t z1, std::vector<char>& buffer) {
         const std::int64_t count = (z1 - z0) * sliceVoxels();
         if (all) return {z0, z1, voxelsOf(type, static_cast<const char*>(all) + z0 * sliceBytes(), count)};
         buffer.resize(static_cast<std::size_t>((z1 - z0) * sliceBytes()));
@@ -149,6 +178,11 @@ ImageStream::~ImageStream() = default;
 ImageStream::ImageStream(ImageStream&&) noexcept = default;
 ImageStream& ImageStream::operator=(ImageStream&&) noexcept = default;
 
+void ImageStream::takeAsMask(std::vector<float> values) {
+    std::sort(values.begin(), values.end());
+    state_->inMask = std::move(values);
+}
+
 const Image& ImageStream::header() const { return state_->header; }
 std::int64_t ImageStream::slabSlices() const { return state_->slabSlices; }
 bool ImageStream::isInFile() const { return !state_->all && !state_->keep; }
@@ -159,7 +193,7 @@ void ImageStream::pass(std::string_view stage, const Progress& progress,
     State& s = *state_;
     if (s.keep && !s.all) s.readAll(progress);
     const std::int64_t depth = s.header.size[2], slabs = (depth + s.slabSlices - 1) / s.slabSlices;
-    tbb::enumerable_thread_specific<std::vector<char>> buffers;
+    tbb::enumerable_thread_specific<State::Buffers> buffers;
     for (std::int64_t first = 0; first < slabs; first += kBatchSlabs) {
         progress(stage, static_cast<double>(first) / static_cast<double>(slabs));
         const std::int64_t last = std::min(first + kBatchSlabs, slabs);

@@ -47,6 +47,10 @@ class ImageStream {
     ImageStream(ImageStream&&) noexcept;
     ImageStream& operator=(ImageStream&&) noexcept;
 
+    // From now on voxels are 1 where they hold one of these values (as float32) and 0 elsewhere, as uint8: the union of
+    // several labels. REQUIRES: at least one value.
+    void takeAsMask(std::vector<float> values);
+
     // All but `values`. The warning about rounded integers is there after the first pass.
     const Image& header() const;
     // Slices in a slab; the last one of the image may have fewer.

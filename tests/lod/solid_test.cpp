@@ -114,6 +114,32 @@ TEST(Labels, AreTakenTogetherOrOneByOne) {
                 HasSubstr("no voxel has the label 3; labels found"));
 }
 
+// The union of all labels is what the image shows without any; whole numbers are labels as float32, too.
+TEST(Labels, AreJoined) {
+    Image image = labelImage();
+    const auto points = [&](const SolidOptions& options) {
+        return makeLevel(open(image, options), 0).mesh.points;
+    };
+    const auto all = points({});
+    EXPECT_EQ(points({.labels = {1, 2}}), all);
+    EXPECT_EQ(points({.labels = {2, 1}}), all);
+    EXPECT_EQ(points({.labels = {2, 2}}), points({.label = 2}));
+    EXPECT_NE(points({.label = 2}), all);
+    const Solid both = open(image, {.labels = {1, 2}});
+    EXPECT_THAT(both.input().labels, testing::ElementsAre(1, 2));
+    EXPECT_EQ(both.input().label, std::nullopt);
+    EXPECT_EQ(both.input().iso, std::nullopt);
+    EXPECT_THAT(refusal([&] {
+                    open(image, {.labels = {1, 3}});
+                }),
+                HasSubstr("no voxel has the label 3; labels found"));
+    image.componentType = "float32";
+    image.integral = false;
+    EXPECT_EQ(points({}), all);
+    for (float& v : image.values) v *= 0.5f;
+    EXPECT_THAT(refusal([&] { open(image); }), HasSubstr("--iso is missing"));
+}
+
 TEST(Masks, SayTheVolumeOfTheirVoxels) {
     Image image = labelImage();
     image.indexToWorld.axis[2][2] = 3;

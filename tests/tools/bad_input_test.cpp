@@ -55,6 +55,19 @@ const std::vector<BadInput>& rows() {
          },
          {"no.nrrd", "no such"}},
         {"MissingMesh", 3, [](const Folder& f) { return lod(f, "no.stl"); }, {"no.stl", "no such"}},
+        {"RangeOfIsoValues",
+         2,
+         [](const Folder& f) {
+             return lod(f, "no.nrrd", {"--iso", "200..600"});
+         },
+         {"--iso", "'200..600' is a range", "mask"}},
+        {"CadModel",
+         3,
+         [](const Folder& f) {
+             std::ofstream(f / "part.step") << "ISO-10303-21;";
+             return lod(f, "part.step");
+         },
+         {"part.step", "is a CAD model", "gmsh"}},
         {"UnknownKind",
          3,
          [](const Folder& f) {

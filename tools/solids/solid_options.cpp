@@ -13,13 +13,30 @@ RawLayout& raw(SolidOptions& solid) {
     return *solid.image.raw;
 }
 
+void takeLabels(const std::string& text, SolidOptions& solid) {
+    solid.labels = list(text, number);
+    if (solid.labels.size() > 1) return;
+    solid.label = solid.labels.front();
+    solid.labels.clear();
+}
+
+// A surface has one value; who gives a range wants the voxels within it.
+double isoValue(const std::string& text) {
+    if (text.find("..") != std::string::npos)
+        throw UsageError(
+            "'" + text +
+            "' is a range; expected one number. For the voxels between two values, write them as a mask, "
+            "1 inside and 0 elsewhere, and give that");
+    return number(text);
+}
+
 void declareInside(OptionList& options, SolidOptions& solid) {
     options.value("--iso", "V", "masks: midpoint; labels: not zero; level sets: 0; other images: required",
                   "the surface is where the value is V; inside is where it is larger (level sets: smaller)",
-                  [&](const std::string& v) { solid.iso = number(v); });
-    options.value("--label", "L", "every label but 0",
-                  "the solid is where a label image is L (after NIfTI's scaling)",
-                  [&](const std::string& v) { solid.label = number(v); });
+                  [&](const std::string& v) { solid.iso = isoValue(v); });
+    options.value("--label", "L[,L...]", "every label but 0",
+                  "the solid is where a label image is L, or one of several (after NIfTI's scaling)",
+                  [&](const std::string& v) { takeLabels(v, solid); });
     options.flag("--invert", "swap inside and outside", solid.invert);
     options.flag("--open-border", "no cap where the solid touches the border of the image", solid.openBorder);
     options.value("--voxels", "N", "256", "meshes: sample with N voxels along the longest axis",
@@ -94,6 +111,12 @@ void declareImage(OptionList& options, SolidOptions& solid) {
                   });
     options.value("--header-bytes", "N", "0", "headerless image: bytes to skip at the start",
                   [&](const std::string& v) { raw(solid).headerBytes = integer(v, 0, kHuge); });
+    options.value("--volume", "N", "",
+                  "file of several volumes (4D NIfTI, layers of a .seg.nrrd): which, 0 is the first",
+                  [&](const std::string& v) { solid.image.volume = integer(v, 0, kHuge); });
+    options.value("--nan", "V", "",
+                  "what voxels that are NaN, not measured, are taken as; else they are refused",
+                  [&](const std::string& v) { solid.image.nan = static_cast<float>(number(v)); });
     options.value("--series", "ID", "", "DICOM folder with several series: a part of its UID or description",
                   [&](const std::string& v) { solid.image.series = v; });
 }

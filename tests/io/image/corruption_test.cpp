@@ -1,5 +1,5 @@
-// Headers that were changed at random places: the image is read or refused in one line. Nothing is printed
-// and nothing aborts, which ITK, VNL and the libraries below them do over a wrong number.
+// Files that were changed at random places: the image is read or refused in one line. Nothing is printed and nothing
+// aborts, which ITK, VNL and the libraries below them do over a wrong number; no case takes 5 s or 1 GB.
 //
 // Each case is read in a child process, many to a child; where a child dies the next one goes on behind the
 // case that killed it.
@@ -7,7 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <zlib.h>
 
 #include <cstring>
 #include <random>
@@ -16,6 +18,7 @@
 #include "isowave/image.h"
 #include "tests/io/image/files.h"
 #include "tests/io/image/itk.h"
+#include "tests/io/image/written.h"
 #include "volume/linear_transform.h"
 
 namespace isowave {
@@ -112,7 +115,9 @@ class Corruption : public test::ImageFiles {
                 child(file, image, mutations, shared);
             }
             int status = 0;
-            ::waitpid(pid, &status, 0);
+            rusage used{};
+            ::wait4(pid, &status, 0, &used);
+            EXPECT_LT(used.ru_maxrss, 1 << 20) << "kB";
             if (WIFSIGNALED(status)) {
                 ADD_FAILURE() << mutations[shared.next].what << ": killed by signal " << WTERMSIG(status);
                 ++shared.next;
@@ -367,6 +372,93 @@ TEST_F(Corruption, OfNifti) {
     const std::string none(2, '\0');
     sweep(folder / "a.nii", folder / "a.nii", binaryMutations(replaced(bytes, 252, 2, none), 352));
     sweep(folder / "a.nii", folder / "a.nii", binaryMutations(replaced(bytes, 254, 2, none), 352));
+}
+
+// ---- voxels that have to be decoded: whole files, header and voxels, byte by byte
+
+// Bytes of the whole file, by ones that are often wrong and by random ones, and every length.
+std::vector<Mutation> wholeFileMutations(const std::string& bytes) {
+    std::vector<Mutation> all;
+    changeBytes(bytes, bytes.size(), all);
+    changeSeveral(bytes, bytes.size(), 2000, all);
+    all = thinned(all, casesEach());
+    for (std::size_t length = 1; length < bytes.size(); ++length)
+        all.push_back({fmt::format("the first {} bytes", length), bytes.substr(0, length)});
+    return all;
+}
+
+std::string gzipped(const std::string& text) {
+    uLongf length = compressBound(text.size()) + 100;
+    std::string out(length, '\0');
+    z_stream z{};
+    deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    std::string in = text;
+    z.next_in = reinterpret_cast<Bytef*>(in.data());
+    z.avail_in = static_cast<uInt>(in.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(length);
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    return out;
+}
+
+test::NiftiFile smallNifti() {
+    test::NiftiFile file;
+    file.size = {7, 5, 4};
+    file.sformCode = 1;
+    file.srow = {0.7, 0.1, 0, -11, 0, 1.1, 0.2, 22, 0, 0, 2.5, 305};
+    std::vector<std::int16_t> voxels(140);
+    for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<std::int16_t>(i * 37 % 251);
+    file.voxels = test::bytes(voxels);
+    return file;
+}
+
+TEST_F(Corruption, OfCompressedNifti) {
+    const std::string bytes = gzipped(smallNifti().file());
+    sweep(folder / "a.nii.gz", folder / "a.nii.gz", wholeFileMutations(bytes));
+}
+
+// Sizes of 64 bits, among them such as are right modulo 2^32, which is all that a gzip stream says of its length.
+TEST_F(Corruption, OfNifti2) {
+    test::NiftiFile file = smallNifti();
+    file.second = true;
+    sweep(folder / "a.nii", folder / "a.nii", binaryMutations(file.file(), 544));
+    const std::string bytes = file.file();
+    std::vector<Mutation> packed;
+    for (std::size_t at = 16; at < 80; ++at)
+        for (const char value : {'\1', '\x7F', '\xFF'})
+            packed.push_back({fmt::format("byte {} before packing", at),
+                              gzipped(replaced(bytes, at, 1, std::string(1, value)))});
+    packed.push_back({"whole", gzipped(bytes)});
+    sweep(folder / "b.nii.gz", folder / "b.nii.gz", packed);
+}
+
+TEST_F(Corruption, OfDecodedNrrd) {
+    const std::string voxels = smallNifti().voxels;
+    std::string text, hex;
+    for (std::size_t i = 0; i < 140; ++i) text += std::to_string(i * 37 % 251) + (i % 7 == 6 ? "\n" : " ");
+    for (const unsigned char c : voxels) hex += fmt::format("{:02x}", c);
+    const auto file = [&](const std::string& encoding, const std::string& data) {
+        return test::nrrdFile(
+            "type: short\ndimension: 4\nsizes: 1 7 5 4\nendian: little\nkinds: list domain domain "
+            "domain\nspace: LAS\nspace units: \"um\" \"um\" \"um\"\nspace directions: none "
+            "(0.7,0,0) (0,1.1,0) (0,0,2.5)\nspace origin: (1,2,3)\nencoding: " +
+                encoding + "\n",
+            data);
+    };
+    const std::pair<const char*, std::string> files[] = {
+        {"gzip", gzipped(voxels)}, {"ascii", text}, {"hex", hex}};
+    for (const auto& [encoding, data] : files) {
+        const std::string bytes = file(encoding, data);
+        sweep(folder / "a.nrrd", folder / "a.nrrd", wholeFileMutations(bytes));
+    }
+}
+
+TEST_F(Corruption, OfCompressedMetaImage) {
+    test::writeItk(obliqueImage().GetPointer(), folder / "a.mha", true);
+    const std::string bytes = bytesOf(folder / "a.mha");
+    sweep(folder / "a.mha", folder / "a.mha", wholeFileMutations(bytes));
 }
 
 }  // namespace

@@ -95,7 +95,8 @@ TEST_P(Geometry, PointsLieWhereItkPutsThem) {
     const Image image = readImage(path);
     const auto asItk = test::readItk<Float3>(path);
     for (const Vec3& p : somePoints()) {
-        EXPECT_LT(length(worldOf(image, p) - worldOf(asItk.GetPointer(), p)), 1e-9);
+        // ITK turns NIfTI's sform into a rotation in single precision.
+        EXPECT_LT(length(worldOf(image, p) - worldOf(asItk.GetPointer(), p)), format.writtenTo);
         EXPECT_LT(length(worldOf(image, p) - worldOf(written.GetPointer(), p)), format.writtenTo);
     }
     const auto spacing = image.spacing();

@@ -251,6 +251,24 @@ TEST_F(ImageStreamFiles, CountWhatIsInAnImage) {
     EXPECT_TRUE(statisticsOf(many).distinct.empty());
 }
 
+TEST_F(ImageStreamFiles, BecomeTheMaskOfSomeValues) {
+    Image image;
+    image.size = {31, 17, 11};
+    for (std::int64_t i = 0; i < image.voxelCount(); ++i)
+        image.values.push_back(static_cast<float>(i * i % 7) - 1);
+    for (const std::int64_t slices : {0, 1, 4}) {
+        ImageStream stream(image, slices);
+        stream.takeAsMask({3, -1});
+        std::vector<std::uint8_t> mask(image.values.size());
+        stream.pass("", {}, [&](const Slab& slab) {
+            const auto& values = std::get<std::span<const std::uint8_t>>(slab.voxels);
+            std::copy(values.begin(), values.end(), mask.begin() + slab.z0 * 31 * 17);
+        });
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            ASSERT_EQ(mask[i], image.values[i] == 3 || image.values[i] == -1) << i;
+    }
+}
+
 // ---- what is wrong
 
 std::string lineOf(const std::function<void()>& work) {
