@@ -68,8 +68,8 @@ struct ImageReadOptions {
     std::optional<RawLayout> raw = {};
     // Which series of a DICOM folder: any unique part of its UID or of its description.
     std::optional<std::string> series = {};
-    // Which volume of a file that holds several, 0 the first: times of a 4D NIfTI, layers of a .seg.nrrd. Without it such
-    // a file is refused.
+    // Which volume of a file that holds several, from 1 on: times of a 4D NIfTI, layers of a .seg.nrrd. Without it such a
+    // file is refused.
     std::optional<std::int64_t> volume = {};
     // What voxels that are NaN, "not measured", are taken as. Without it they are refused.
     std::optional<float> nan = {};

@@ -212,7 +212,7 @@ def judge(options, path, kind):
     volume = []
     code, out, err = run(options, 'info', path, '--json', '-')
     if code == 3 and '--volume' in err:  # of several the first one
-        volume = ['--volume', '0']
+        volume = ['--volume', '1']
         code, out, err = run(options, 'info', path, '--json', '-', *volume)
     lines = [line for line in err.replace('\r', '\n').splitlines() if line.strip()]
     if code in (2, 3):
@@ -231,7 +231,7 @@ def judge(options, path, kind):
     if truth is None:
         return ('DIFFERS', complaint) if complaint else ('alone', said)
     found = differences(info, truth) + ([complaint] if complaint else [])
-    return ('DIFFERS', '; '.join(found)) if found else ('same', truth.note + (' volume 0' if volume else ''))
+    return ('DIFFERS', '; '.join(found)) if found else ('same', truth.note + (' volume 1' if volume else ''))
 
 
 def main():

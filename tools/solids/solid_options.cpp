@@ -112,8 +112,8 @@ void declareImage(OptionList& options, SolidOptions& solid) {
     options.value("--header-bytes", "N", "0", "headerless image: bytes to skip at the start",
                   [&](const std::string& v) { raw(solid).headerBytes = integer(v, 0, kHuge); });
     options.value("--volume", "N", "",
-                  "file of several volumes (4D NIfTI, layers of a .seg.nrrd): which, 0 is the first",
-                  [&](const std::string& v) { solid.image.volume = integer(v, 0, kHuge); });
+                  "file of several volumes (4D NIfTI, layers of a .seg.nrrd): which one, from 1 on",
+                  [&](const std::string& v) { solid.image.volume = integer(v, 1, kHuge); });
     options.value("--nan", "V", "",
                   "what voxels that are NaN, not measured, are taken as; else they are refused",
                   [&](const std::string& v) { solid.image.nan = static_cast<float>(number(v)); });

@@ -479,7 +479,8 @@ void takeVoxels(const fs::path& path, const NrrdText& text, std::int64_t needed,
 
 // ---- segmentations of 3D Slicer
 
-// "Segment3_Name" of each segment, with its label and layer: "layer 0: liver = 1, tumour = 2; layer 1: vessel = 1".
+// "Segment3_Name" of each segment, with its label and, counted from 1, its layer:
+// "volume 1: liver = 1, tumour = 2; volume 2: vessel = 1".
 std::string segmentsText(const NrrdText& text, bool layers) {
     std::map<std::int64_t, std::vector<std::string>> found;
     for (int i = 0; text.note.contains(fmt::format("Segment{}_Name", i)); ++i) {
@@ -492,9 +493,9 @@ std::string segmentsText(const NrrdText& text, bool layers) {
     }
     std::string result;
     for (const auto& [layer, names] : found)
-        result +=
-            fmt::format("{}{}{}", result.empty() ? "" : "; ",
-                        layers ? fmt::format("layer {}: ", layer) : std::string(), fmt::join(names, ", "));
+        result += fmt::format("{}{}{}", result.empty() ? "" : "; ",
+                              layers ? fmt::format("volume {}: ", layer + 1) : std::string(),
+                              fmt::join(names, ", "));
     return oneLine(result);
 }
 

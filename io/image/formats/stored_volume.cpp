@@ -105,22 +105,22 @@ class ScaledSource : public VoxelSource {
 };
 
 [[noreturn]] void throwSeveral(const fs::path& path, const StoredVolume& volume, std::int64_t count) {
-    throw InputError(
-        path.string(),
-        fmt::format("is a series of {} volumes{}; choose one with --volume, 0 to {}", count,
-                    volume.volumesText.empty() ? "" : " (" + volume.volumesText + ")", count - 1));
+    throw InputError(path.string(),
+                     fmt::format("is a series of {} volumes{}; choose one with --volume, 1 to {}", count,
+                                 volume.volumesText.empty() ? "" : " (" + volume.volumesText + ")", count));
 }
 
+// Which volume is read, counted from 0; options.volume counts from 1.
 std::int64_t chosen(const fs::path& path, const StoredVolume& volume, const ImageReadOptions& options) {
     const std::int64_t count = volume.voxels.inner * volume.voxels.outer;
     if (!options.volume && count > 1) throwSeveral(path, volume, count);
-    const std::int64_t number = options.volume.value_or(0);
-    if (number < 0 || number >= count)
-        throw InputError(path.string(),
-                         count == 1 ? fmt::format("holds one volume, number 0; --volume says {}", number)
-                                    : fmt::format("holds {} volumes, 0 to {}; --volume says {}", count,
-                                                  count - 1, number));
-    return number;
+    const std::int64_t number = options.volume.value_or(1);
+    if (number < 1 || number > count)
+        throw InputError(
+            path.string(),
+            count == 1 ? fmt::format("holds one volume, number 1; --volume says {}", number)
+                       : fmt::format("holds {} volumes, 1 to {}; --volume says {}", count, count, number));
+    return number - 1;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct StoredVolume {
         header;  // of one volume: size, place; type is that of the stored numbers, before slope and intercept
     VoxelLayout voxels;
     std::string promise;      // where the header says how large it is, for messages: "'sizes' says 4 x 3 x 2"
-    std::string volumesText;  // what the volumes are, where the header names them: "layer 0: liver"
+    std::string volumesText;  // what the volumes are, where the header names them: "volume 1: liver"
 };
 
 // Opens it; options.volume chooses one of several volumes. Voxels that lie in one file as they are can be read a few slices

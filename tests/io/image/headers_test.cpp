@@ -242,14 +242,16 @@ TEST_F(Headers, OneOfSeveralVolumesIsChosen) {
     file.voxels = bytes<std::int16_t>({0, 1, 2, 3, 10, 11, 12, 13, 20, 21, 22, 23});
     const fs::path path = put(folder / "a.nii", file.file());
     put(folder / "b.nii.gz", gzip(file.file()));
-    EXPECT_THAT(refusal(path), HasSubstr("is a series of 3 volumes; choose one with --volume, 0 to 2"));
+    EXPECT_THAT(refusal(path), HasSubstr("is a series of 3 volumes; choose one with --volume, 1 to 3"));
     ImageReadOptions options;
-    options.volume = 1;
-    EXPECT_THAT(readImage(path, options).values, ElementsAre(10, 11, 12, 13));
     options.volume = 2;
-    EXPECT_THAT(readImage(folder / "b.nii.gz", options).values, ElementsAre(20, 21, 22, 23));
+    EXPECT_THAT(readImage(path, options).values, ElementsAre(10, 11, 12, 13));
     options.volume = 3;
-    EXPECT_THAT(refusal(path, options), HasSubstr("holds 3 volumes, 0 to 2; --volume says 3"));
+    EXPECT_THAT(readImage(folder / "b.nii.gz", options).values, ElementsAre(20, 21, 22, 23));
+    options.volume = 4;
+    EXPECT_THAT(refusal(path, options), HasSubstr("holds 3 volumes, 1 to 3; --volume says 4"));
+    options.volume = 0;
+    EXPECT_THAT(refusal(path, options), HasSubstr("holds 3 volumes, 1 to 3; --volume says 0"));
     file.size = {2, 3, 2};
     EXPECT_THAT(refusal(put(folder / "c.nii", file.file()), options), HasSubstr("holds one volume"));
 }
@@ -268,12 +270,12 @@ TEST_F(Headers, LayersOfASegmentationAreNamedAndChosen) {
         const fs::path path = nrrd(kLayers + (compressed ? "encoding: gzip\n" : "encoding: raw\n"),
                                    compressed ? gzip(voxels) : voxels);
         EXPECT_THAT(refusal(path),
-                    HasSubstr("is a series of 2 volumes (layer 0: liver = 1; layer 1: left kidney "
-                              "= 5); choose one with --volume, 0 to 1"));
+                    HasSubstr("is a series of 2 volumes (volume 1: liver = 1; volume 2: left kidney "
+                              "= 5); choose one with --volume, 1 to 2"));
         ImageReadOptions options;
-        options.volume = 0;
-        EXPECT_THAT(readImage(path, options).values, ElementsAre(1, 2, 3, 4));
         options.volume = 1;
+        EXPECT_THAT(readImage(path, options).values, ElementsAre(1, 2, 3, 4));
+        options.volume = 2;
         EXPECT_THAT(readImage(path, options).values, ElementsAre(5, 6, 7, 8));
     }
 }
@@ -336,7 +338,7 @@ TEST_F(Headers, TimeIsNoAxisOfSpace) {
         "type: uint8\ndimension: 4\nsizes: 2 1 2 2\nencoding: raw\nspace: right-anterior-superior-time\n"
         "space directions: (2,0,0,0) (0,3,0,0) (0,0,4,0) (0,0,0,1)\nspace origin: (10,20,30,0)\n";
     ImageReadOptions options;
-    options.volume = 1;
+    options.volume = 2;
     const Image image = readImage(nrrd(lines, "\1\2\3\4\5\6\7\10"), options);
     EXPECT_THAT(image.values, ElementsAre(5, 6, 7, 8));
     expectStep(image, 1, {0, -3, 0});
