@@ -68,6 +68,13 @@ struct ImageReadOptions {
     std::optional<RawLayout> raw = {};
     // Which series of a DICOM folder: any unique part of its UID or of its description.
     std::optional<std::string> series = {};
+    // Which stack of a DICOM folder or file, from 1 on, as the message about several lists them: frames of one series,
+    // size, orientation and spacing. Of a segmentation: its how-manieth segment, alone.
+    std::optional<std::int64_t> stack = {};
+    // Which of several volumes that lie at one place (times, echoes), from 1 on.
+    std::optional<std::int64_t> time = {};
+    // DICOM slices in uneven steps along a line are interpolated, linearly, to even ones; without it they are refused.
+    bool resampleSlices = false;
     // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
     // machine has. A header that asks for more is refused before anything is allocated.
     std::int64_t memoryLimit = 0;
@@ -76,8 +83,8 @@ struct ImageReadOptions {
 // Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
 // DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty
 // or truncated file, a 2D image, a time series, RGB or vector voxels, NaN or infinite voxels (says where),
-// spacing <= 0, a direction matrix that cannot be inverted, a folder with several series (lists them), a size
-// that memory cannot hold. Throws Cancelled when progress says so.
+// spacing <= 0, a direction matrix that cannot be inverted, a folder with several series or stacks (lists them), slices
+// that do not lie on one line in even steps (within 1 % of a step), a size that memory cannot hold. Throws Cancelled when progress says so.
 ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
                                const Progress& progress = {});
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/image/dicom/data_set.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -19,7 +20,7 @@ FileKind kindByContent(const fs::path& path) {
     if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return FileKind::png;
     if (text.compare(0, 4, std::string("II*\0", 4)) == 0 || text.compare(0, 4, std::string("MM\0*", 4)) == 0)
         return FileKind::tiff;
-    return FileKind::none;
+    return looksLikeDicom(path) ? FileKind::dicom : FileKind::none;  // without a preamble
 }
 
 }  // namespace

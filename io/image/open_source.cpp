@@ -8,7 +8,7 @@
 #include <map>
 
 #include "io/image/check.h"
-#include "io/image/dicom.h"
+#include "io/image/dicom/open.h"
 #include "io/image/itk_reader.h"
 #include "io/image/kind.h"
 #include "io/image/plain.h"
