@@ -81,10 +81,10 @@ struct ImageReadOptions {
 };
 
 // Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
-// DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty
-// or truncated file, a 2D image, a time series, RGB or vector voxels, NaN or infinite voxels (says where),
-// spacing <= 0, a direction matrix that cannot be inverted, a folder with several series or stacks (lists them), slices
-// that do not lie on one line in even steps (within 1 % of a step), a size that memory cannot hold. Throws Cancelled when progress says so.
+// DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty or truncated
+// file, 2D image, time series, RGB or vector voxels, voxels not finite (says where), spacing <= 0, a direction matrix that
+// cannot be inverted, several series or stacks (lists them), slices that do not lie on one line in even steps within 1 %,
+// a size that memory cannot hold; UsageError for options of DICOM on other formats; Cancelled when progress says so.
 ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
                                const Progress& progress = {});
 

@@ -96,6 +96,17 @@ void checkAxes(const std::string& name, const Header& header) {
                                                sizeText(header.size), kMostOnAxis));
 }
 
+void refuseDicomOptions(const std::string& name, const Header& header, const ImageReadOptions& options) {
+    if (header.format.starts_with("DICOM")) return;
+    const char* option = options.series           ? "--series"
+                         : options.stack          ? "--stack"
+                         : options.resampleSlices ? "--resample-slices"
+                                                  : nullptr;
+    if (option)
+        throw UsageError(fmt::format("{} has no meaning for {}, which is {}, not DICOM; leave it out", option,
+                                     name, header.format));
+}
+
 }  // namespace
 
 SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
@@ -111,6 +122,7 @@ SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
                          "them out for a folder of slices");
     try {
         SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
+        refuseDicomOptions(name, source->header, options);
         settleGeometry(name, source->header, options);
         checkAxes(name, source->header);
         return source;

@@ -303,6 +303,15 @@ bool pointsAt(const DicomSet& set, const DicomTag& tag) {
     return std::find(all.begin(), all.end(), static_cast<double>(tag.number)) != all.end();
 }
 
+// What FrameIncrementPointer names when that is an energy, a detector, a rotation or a time of nuclear medicine (group
+// 0054) and no slice; 0 otherwise.
+std::uint32_t nuclearPointer(const DicomSet& set) {
+    if (pointsAt(set, tag::kSliceVector)) return 0;
+    for (const double named : set.numbers(tag::kFramePointer))
+        if (static_cast<std::uint32_t>(named) >> 16 == 0x0054) return static_cast<std::uint32_t>(named);
+    return 0;
+}
+
 // Why frames are times rather than slices; "" when they are not. What FrameIncrementPointer names is what a step from
 // frame to frame is; files without one that say how fast a film runs, and no distance, are films too.
 std::string filmProblem(const DicomSet& set, const DicomFrame& frame) {
@@ -312,6 +321,8 @@ std::string filmProblem(const DicomSet& set, const DicomFrame& frame) {
     };
     for (const DicomTag* tag : {&tag::kFrameTime, &tag::kFrameTimeVector, &tag::kTriggerTime})
         if (pointsAt(set, *tag)) return film(fmt::format("FrameIncrementPointer names {}", tag->name));
+    if (const std::uint32_t named = nuclearPointer(set))
+        return film(fmt::format("or views: FrameIncrementPointer names (0054,{:04x})", named & 0xFFFF));
     if (set.has(tag::kFramePointer) || frame.between != 0) return "";
     for (const DicomTag* tag : {&tag::kFrameTime, &tag::kFrameTimeVector, &tag::kCineRate})
         if (set.number(*tag))

@@ -59,7 +59,8 @@ struct DicomFrame {
     bool stepAssumed = false;
 
     bool placed() const { return position && row && column; }
-    Vec3 normal() const { return cross(*row, *column); }
+    // Unit vector. REQUIRES: row and column.
+    Vec3 normal() const { return cross(*row, *column) / length(cross(*row, *column)); }
     // "IM0001.dcm", or "IM0001.dcm frame 3" of a file of several.
     std::string name() const;
 };

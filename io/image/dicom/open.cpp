@@ -46,21 +46,26 @@ void requireUsable(const DicomStack& stack) {
             throw InputError(frame.object->file.path.string(), frame.object->problem);
 }
 
+bool isSegmentation(const DicomStack& stack) { return stack[0].segment > 0 && stack[0].placed(); }
+
+// options.stack: a segment.
+SourcePtr openPicked(const std::string& name, DicomStack stack, const ImageReadOptions& options) {
+    requireUsable(stack);
+    if (isSegmentation(stack)) return segmentsSource(name, std::move(stack), options);
+    PlacedStack placed = placeStack(name, std::move(stack), options);
+    Header header = headerOf(placed, options);
+    return framesSource(std::move(placed), std::move(header));
+}
+
 SourcePtr openStack(const std::string& name, std::vector<DicomFrame> frames, const ImageReadOptions& options,
                     std::vector<std::string> remarks) {
     std::vector<DicomStack> stacks = stacksOf(std::move(frames));
-    const bool segments = stacks.size() == 1 && stacks[0][0].segment > 0 && stacks[0][0].placed();
-    SourcePtr source;
-    if (segments) {
-        requireUsable(stacks[0]);
-        source = segmentsSource(name, std::move(stacks[0]), options);
-    } else {
-        DicomStack stack = pickStack(name, std::move(stacks), options, remarks);
-        requireUsable(stack);
-        PlacedStack placed = placeStack(name, std::move(stack), options);
-        Header header = headerOf(placed, options);
-        source = framesSource(std::move(placed), std::move(header));
-    }
+    ImageReadOptions within = options;
+    // Beside other stacks, options.stack chooses the segmentation and not a segment of it.
+    const bool alone = stacks.size() == 1 && isSegmentation(stacks[0]);
+    if (!alone) within.stack.reset();
+    SourcePtr source = openPicked(
+        name, alone ? std::move(stacks[0]) : pickStack(name, std::move(stacks), options, remarks), within);
     auto& warnings = source->header.warnings;
     warnings.insert(warnings.begin(), remarks.begin(), remarks.end());
     return source;

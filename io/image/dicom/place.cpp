@@ -182,11 +182,15 @@ void stackBlindly(const std::string& folder, DicomStack& stack, PlacedStack& pla
     else if (stack.size() > 1)
         placed.step = heights[1];
     if (placed.step == 0) placed.step = step;
+    for (DicomFrame& frame : stack) {
+        if (frame.row) continue;
+        frame.row = Vec3{1, 0, 0};
+        frame.column = Vec3{0, 1, 0};
+    }
+    const Vec3 normal = stack[0].normal();
     for (std::size_t i = 0; i < stack.size(); ++i) {
         DicomFrame& frame = stack[i];
-        if (!frame.row) frame.row = Vec3{1, 0, 0};
-        if (!frame.column) frame.column = Vec3{0, 1, 0};
-        frame.position = cross(*stack[0].row, *stack[0].column) * heights[i];
+        frame.position = normal * heights[i];
         if (placed.step == 0) frame.stepAssumed = true;
     }
     const char* by = numbered ? "InstanceNumber" : "SliceLocation";
@@ -304,7 +308,7 @@ double roundingOf(const DicomStack& stack) {
 }
 
 void remarkTilt(const DicomStack& stack, const Line& line, std::vector<std::string>& remarks) {
-    const Vec3 normal = stack[0].normal() / length(stack[0].normal());
+    const Vec3 normal = stack[0].normal();
     // Positions are rounded, often to 0.1 mm; a lean below half a pixel over the whole stack is not worth a word.
     const double lean = length(line.along - normal * dot(line.along, normal)) * line.heights.back();
     const double tilt = std::acos(std::clamp(dot(line.along, normal), -1.0, 1.0)) * 180 / M_PI;
@@ -332,7 +336,7 @@ bool liesEvenly(DicomStack stack) {
 PlacedStack placeStack(const std::string& folder, DicomStack stack, const ImageReadOptions& options) {
     PlacedStack placed;
     if (!stack[0].placed()) stackBlindly(folder, stack, placed);
-    const Vec3 normal = stack[0].normal() / length(stack[0].normal());
+    const Vec3 normal = stack[0].normal();
     sortAlong(stack, normal);
     placed.frames = oneOfEach(folder, placesOf(std::move(stack), normal), options, placed.remarks);
     placed.slices = static_cast<std::int64_t>(placed.frames.size());

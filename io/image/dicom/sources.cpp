@@ -75,6 +75,11 @@ Header headerOf(const PlacedStack& placed, const ImageReadOptions& options) {
         header.spacing[2] = header.spacing[0];
     }
     takeRemarks(placed.frames, header);
+    const double lean = dot(header.axis[0], header.axis[1]);
+    if (std::abs(lean) > 1e-3)
+        header.warnings.push_back(
+            fmt::format("rows and columns stand at {:.1f} degrees; the voxels are kept so",
+                        std::acos(lean) * 180 / M_PI));
     header.warnings.insert(header.warnings.end(), placed.remarks.begin(), placed.remarks.end());
     return header;
 }
@@ -268,7 +273,7 @@ SourcePtr segmentsSource(const std::string& folder, DicomStack stack, const Imag
         throw InputError(folder,
                          fmt::format("holds shares of {} segments ({}); choose one: --stack 1 for the first",
                                      segments, listOf(stack)));
-    const Vec3 normal = stack[0].normal() / length(stack[0].normal());
+    const Vec3 normal = stack[0].normal();
     std::stable_sort(stack.begin(), stack.end(), [&](const DicomFrame& a, const DicomFrame& b) {
         return dot(*a.position, normal) < dot(*b.position, normal);
     });

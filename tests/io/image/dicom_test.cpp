@@ -305,6 +305,14 @@ TEST_F(Dicom, RefusesATruncatedSliceAmongOthers) {
     EXPECT_THAT(refusal(), AllOf(HasSubstr("IM1.dcm"), HasSubstr("but holds 30 bytes; it is truncated")));
 }
 
+TEST_F(Dicom, HasOptionsOfItsOwn) {
+    put(folder / "a.raw", std::string(8, '\1'));
+    ImageReadOptions options{.raw = RawLayout{.size = {2, 2, 2}, .type = "uint8"}};
+    EXPECT_EQ(test::refusal(folder / "a.raw", options), "");
+    options.stack = 1;
+    EXPECT_THROW(readImage(folder / "a.raw", options), UsageError);
+}
+
 // ---- frames
 
 class DicomFrames : public Dicom {
@@ -392,6 +400,19 @@ TEST_F(DicomFrames, ThatAreTimesAreRefused) {
     EXPECT_THAT(test::refusal(write(says, {0, 1, 2})), HasSubstr("CineRate says 30"));
 }
 
+TEST_F(DicomFrames, ThatAreViewsOfNuclearMedicineAreRefused) {
+    DicomSays says = axial(0, 7);
+    says.modality = "NM";
+    says.more.numbers(0x00180088, {2}).at(0x00280009, 0x00540010);
+    EXPECT_THAT(test::refusal(write(says, {0, 1, 2})), HasSubstr("FrameIncrementPointer names (0054,0010)"));
+    // A negative distance runs against the normal there.
+    says.more = DicomOut().numbers(0x00180088, {-2}).at(0x00280009, 0x00540080);
+    says.more.element(0x00540080, "US", std::string("\1\0\2\0\3\0", 6));
+    const Image image = readImage(write(says, {0, 1, 2}));
+    EXPECT_THAT(slicesOf(image), ElementsAre(2, 1, 0));
+    expectAt(image, {0, 0, 0}, {12, -40, 3});
+}
+
 TEST_F(DicomFrames, AtOnePlaceAreChosenByTime) {
     const fs::path path =
         enhanced({0, 10, 1, 11}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 2}, {0, 0, 2}}, {1, 0, 0, 0, 1, 0});
@@ -477,6 +498,18 @@ TEST_F(DicomSegments, BecomeLabels) {
     expected[20 + 8] = expected[40 + 9] = 7;
     EXPECT_EQ(image.values, expected);
     EXPECT_TRUE(image.integral);
+}
+
+TEST_F(DicomSegments, AreAStackBesideSlices) {
+    write({3, 3, 7}, {0, 1, 1}, {5, 6, 7});
+    for (int z = 0; z < 3; ++z) {
+        DicomSays says = axial(z, 2.0 * z);
+        says.series = "1.9";
+        slice(name(static_cast<std::size_t>(z)), says);
+    }
+    EXPECT_THAT(refusal(), HasSubstr("holds 2 series or stacks"));
+    EXPECT_THAT(slicesOf(readImage(folder, {.series = "1.9"})), ElementsAre(0, 1, 2));
+    EXPECT_EQ(readImage(folder, {.stack = 2}).values[27], 7);
 }
 
 TEST_F(DicomSegments, ThatOverlapAreChosenByStack) {
