@@ -73,16 +73,24 @@ struct ImageReadOptions {
     std::optional<std::int64_t> volume = {};
     // What voxels that are NaN, "not measured", are taken as. Without it they are refused.
     std::optional<float> nan = {};
+    // Which stack of a DICOM folder or file, from 1 on, as the message about several lists them: frames of one series,
+    // size, orientation and spacing. Of a segmentation: its how-manieth segment, alone.
+    std::optional<std::int64_t> stack = {};
+    // Which of several volumes that lie at one place (times, echoes), from 1 on.
+    std::optional<std::int64_t> time = {};
+    // DICOM slices in uneven steps along a line are interpolated, linearly, to even ones; without it they are refused.
+    bool resampleSlices = false;
     // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
     // machine has. A header that asks for more is refused before anything is allocated.
     std::int64_t memoryLimit = 0;
 };
 
 // Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
-// DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty
-// or truncated file, a 2D image, several volumes of which none is chosen, RGB or vector voxels, NaN or infinite voxels (says where),
-// spacing <= 0, a direction matrix that cannot be inverted, a folder with several series (lists them), a size
-// that memory cannot hold. Throws Cancelled when progress says so.
+// DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty or truncated
+// file, 2D image, several volumes of which none is chosen, RGB or vector voxels, voxels not finite (says where), spacing
+// <= 0, a direction matrix that cannot be inverted, several series or stacks (lists them), slices that do not lie on one
+// line in even steps within 1 %, a size that memory cannot hold; UsageError for an option that chooses in other formats
+// (--series for NIfTI); Cancelled when progress says so.
 ISOWAVE_EXPORT Image readImage(const std::filesystem::path& path, const ImageReadOptions& options = {},
                                const Progress& progress = {});
 

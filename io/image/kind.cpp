@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/image/dicom/data_set.h"
 #include "io/image/formats/nifti.h"
 
 namespace isowave::imageio {
@@ -22,7 +23,8 @@ FileKind kindByContent(const fs::path& path) {
         return FileKind::tiff;
     for (const char* key : {"ObjectType =", "NDims =", "Comment ="})
         if (text.starts_with(key)) return FileKind::meta;
-    return beginsAsNifti(niftiHeaderOf(path)) ? FileKind::nifti : FileKind::none;
+    if (beginsAsNifti(niftiHeaderOf(path))) return FileKind::nifti;
+    return looksLikeDicom(path) ? FileKind::dicom : FileKind::none;  // without a preamble
 }
 
 bool isHeaderFormat(FileKind kind) {

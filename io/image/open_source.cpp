@@ -6,10 +6,9 @@
 #include <cctype>
 #include <fstream>
 #include <map>
-#include <set>
 
 #include "io/image/check.h"
-#include "io/image/dicom.h"
+#include "io/image/dicom/open.h"
 #include "io/image/fill_nan.h"
 #include "io/image/formats/foreign.h"
 #include "io/image/formats/metaimage.h"
@@ -109,14 +108,26 @@ void checkAxes(const std::string& name, const Header& header) {
                                                sizeText(header.size), kMostOnAxis));
 }
 
-// Formats that hold one volume a file do not look at the option.
-void refuseVolume(const std::string& name, const Header& header, const ImageReadOptions& options) {
-    static const std::set<std::string> formats = {"NIfTI", "NRRD", "MetaImage", "MGH"};
-    if (options.volume && !formats.contains(header.format))
-        throw InputError(name,
-                         fmt::format("is {}; --volume chooses among the volumes of a NIfTI, NRRD, MGH or "
-                                     "MetaImage file; leave it out",
-                                     header.format));
+// Readers do not look at options that choose among what their format cannot hold.
+void refuseForeignOptions(const std::string& name, const Header& header, const ImageReadOptions& options) {
+    struct Choice {
+        const char* option;
+        bool given;
+        std::vector<std::string> formats;  // Header::format begins with one of these
+    };
+    const Choice choices[] = {
+        {"--volume", options.volume.has_value(), {"NIfTI", "NRRD", "MetaImage", "MGH"}},
+        {"--series", options.series.has_value(), {"DICOM"}},
+        {"--stack", options.stack.has_value(), {"DICOM"}},
+        {"--time", options.time.has_value(), {"DICOM"}},
+        {"--resample-slices", options.resampleSlices, {"DICOM"}},
+    };
+    for (const Choice& choice : choices) {
+        const auto fits = [&](const std::string& format) { return header.format.starts_with(format); };
+        if (choice.given && std::none_of(choice.formats.begin(), choice.formats.end(), fits))
+            throw UsageError(fmt::format("{} is for {}; {} is {}; leave it out", choice.option,
+                                         fmt::join(choice.formats, ", "), name, header.format));
+    }
 }
 
 }  // namespace
@@ -134,7 +145,7 @@ SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
                          "them out for a folder of slices");
     try {
         SourcePtr source = folder ? openFolder(path, options) : openFile(path, options);
-        refuseVolume(name, source->header, options);
+        refuseForeignOptions(name, source->header, options);
         settleGeometry(name, source->header, options);
         checkAxes(name, source->header);
         return options.nan ? fillNan(std::move(source), *options.nan) : std::move(source);

@@ -119,6 +119,14 @@ void declareImage(OptionList& options, SolidOptions& solid) {
                   [&](const std::string& v) { solid.image.nan = static_cast<float>(number(v)); });
     options.value("--series", "ID", "", "DICOM folder with several series: a part of its UID or description",
                   [&](const std::string& v) { solid.image.series = v; });
+    options.value("--stack", "N", "",
+                  "DICOM with several stacks of slices, or segments: which one, as the message lists them",
+                  [&](const std::string& v) { solid.image.stack = integer(v, 1, kHuge); });
+    options.value("--time", "N", "", "several volumes at one place (times, echoes): which one, from 1 on",
+                  [&](const std::string& v) { solid.image.time = integer(v, 1, kHuge); });
+    options.flag("--resample-slices",
+                 "DICOM slices in uneven steps: interpolate them, linearly, to even steps",
+                 solid.image.resampleSlices);
 }
 
 void declareMaxMemory(OptionList& options, SolidOptions& solid) {

@@ -106,6 +106,27 @@ TEST_F(BadImage, Colours) {
     EXPECT_THAT(refusal(folder / "stack"), AllOf(HasSubstr("1.png"), HasSubstr("RGB")));
 }
 
+// An option that chooses among what the format cannot hold is not passed over.
+TEST_F(BadImage, OptionsOfOtherFormats) {
+    const fs::path image = nrrd("");
+    const auto says = [&](const fs::path& path, const ImageReadOptions& options) -> std::string {
+        try {
+            readImage(path, options);
+        } catch (const UsageError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(says(image, {.volume = 1}), "");
+    EXPECT_THAT(says(image, {.series = "1"}),
+                HasSubstr("--series is for DICOM; " + image.string() + " is NRRD"));
+    EXPECT_THAT(says(image, {.stack = 1}), HasSubstr("--stack is for DICOM"));
+    EXPECT_THAT(says(image, {.time = 1}), HasSubstr("--time is for DICOM"));
+    EXPECT_THAT(says(image, {.resampleSlices = true}), HasSubstr("--resample-slices is for DICOM"));
+    test::writeItk(test::patternImage<unsigned char>({7, 5, 4}).GetPointer(), folder / "a.tif");
+    EXPECT_THAT(says(folder / "a.tif", {.volume = 1}), HasSubstr("a.tif is TIFF; leave it out"));
+}
+
 TEST_F(BadImage, NotANumber) {
     auto image = test::patternImage<float>({7, 5, 4});
     image->SetPixel({3, 2, 1}, std::numeric_limits<float>::quiet_NaN());

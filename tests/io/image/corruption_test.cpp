@@ -16,6 +16,7 @@
 #include <set>
 
 #include "isowave/image.h"
+#include "tests/io/image/dicom_writer.h"
 #include "tests/io/image/files.h"
 #include "tests/io/image/itk.h"
 #include "tests/io/image/written.h"
@@ -459,6 +460,28 @@ TEST_F(Corruption, OfCompressedMetaImage) {
     test::writeItk(obliqueImage().GetPointer(), folder / "a.mha", true);
     const std::string bytes = bytesOf(folder / "a.mha");
     sweep(folder / "a.mha", folder / "a.mha", wholeFileMutations(bytes));
+}
+
+// Two frames with functional groups; the same compressed, which GDCM decodes in a child.
+TEST_F(Corruption, OfDicom) {
+    test::DicomSays says;
+    says.frames = 2;
+    says.at(1, 2, 3);
+    std::vector<test::DicomOut> groups;
+    for (const double z : {3.0, 5.0}) {
+        test::DicomOut position, group;
+        position.numbers(0x00200032, {1, 2, z});
+        groups.push_back(group.sequence(0x00209113, {position}));
+    }
+    says.more.numbers(0x00281053, {0.5}).sequence(0x52009230, groups);
+    says.pixels = test::slicePixels(1) + test::slicePixels(2);
+    std::string bytes = test::dicomFile(test::dicomSet(says));
+    sweep(folder / "a.dcm", folder / "a.dcm", binaryMutations(bytes, bytes.size() - 80));
+    const std::vector<std::string> pieces{test::runLength(test::slicePixels(1)),
+                                          test::runLength(test::slicePixels(2))};
+    const test::DicomOut compressed = test::dicomSet(says, test::Vr::explicitLittle, false).pieces(pieces);
+    bytes = test::dicomFile(compressed, "1.2.840.10008.1.2.5");
+    sweep(folder / "b.dcm", folder / "b.dcm", thinned(binaryMutations(bytes, bytes.size()), casesEach() / 3));
 }
 
 }  // namespace
