@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number_text.h"
 #include "hold/hold.h"
 #include "hold/limit_level.h"
 #include "isowave/error.h"
@@ -35,6 +36,7 @@ namespace {
 
 constexpr double kPreserved = 1e-4;      // of the volume to keep
 constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
+constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
 constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
@@ -96,6 +98,7 @@ LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
+    if (options.hold == Holding::local) before_ = truth.counts;
 }
 
 LevelMesher::~LevelMesher() = default;
@@ -214,6 +217,7 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     if (step == 0) {
         level0_->counts = *before_;
         tellWalls(level.report);
+        tellDifference(level.report);
     }
     return level;
 }
@@ -231,18 +235,18 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
     return level;
 }
 
-// From level to level nothing becomes more, and nothing is more than was asked for.
+// From the input to level 0 and from level to level nothing becomes more, and nothing is more than was asked for.
 void LevelMesher::limit(LevelMesh& level) {
     LevelReport& report = level.report;
-    const bool falls = options_.hold == Holding::local && report.step != 0;
+    const bool falls = options_.hold == Holding::local && before_;
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
     if (falls && !options_.maxGenus && !options_.maxParts && excess(counts, *before_) > kMostEdits) {
         report.limitsMissed = fmt::format(
-            "{} parts, handles and cavities more than the level before, too many to cut and fill "
-            "unasked; give --max-genus or --max-parts",
-            excess(counts, *before_));
+            "{} parts, handles and cavities more than {}, too many to cut and fill unasked; give "
+            "--max-genus or --max-parts",
+            excess(counts, *before_), report.step == 0 ? "the input" : "the level before");
         return;
     }
     if (level.iso != 0) {
@@ -327,6 +331,25 @@ void LevelMesher::tellWalls(LevelReport& report) const {
                                           : std::string("thickened at every level"));
     }
     progress_.say("the thinnest 1, 5, 50 % of the walls are" + text);
+}
+
+// Silence would mean that level 0 is the input.
+void LevelMesher::tellDifference(const LevelReport& report) const {
+    constexpr double kTold = 0.02;  // of the volume
+    if (openBorder_ || !truth_.volume) return;
+    const SolidCounts counts = countsOf(report.topology);
+    const bool differs = truth_.counts && counts != *truth_.counts;
+    const double error = report.topology.volume / *truth_.volume - 1;
+    if (!differs && std::abs(error) <= kTold) return;
+    const auto text = [](const SolidCounts& c) {
+        return fmt::format("{}, {}, {}", counted(c.parts, "part"), counted(c.handles, "handle"),
+                           counted(c.cavities, "cavity", "cavities"));
+    };
+    const double thinnest = report.walls.empty() ? 1.0 : report.walls.front().voxels;
+    progress_.say(fmt::format("level 0 is not the input: {}{:+.2g} % of its volume; voxels {:.2g} times as large "
+                              "would hold it better",
+                              differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
+                              std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
 }
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {

@@ -32,7 +32,7 @@ struct LevelMesh {
 class LevelMesher {
   public:
     enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
-    // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
+    // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. With Holding::local level 0 has no more parts, handles and cavities than it. Throws UsageError for options that exclude each other.
     LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
                 const InputTruth& truth, const Progress& progress, StageClock& clock);
     ~LevelMesher();
@@ -70,6 +70,7 @@ class LevelMesher {
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
     void tellWalls(LevelReport& report) const;
+    void tellDifference(const LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
     SpeckRemoval draw(LevelMesh& level, double smallest, TriangleMesh ready);
@@ -86,7 +87,7 @@ class LevelMesher {
     std::optional<Border> openBorder_;
     bool wantsThin_;
     InputTruth truth_;
-    std::optional<SolidCounts> before_;  // of the step made before
+    std::optional<SolidCounts> before_;  // of the step made before; at first the input's, where it is known
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

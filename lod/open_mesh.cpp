@@ -22,6 +22,9 @@ namespace {
 // Voxels along the longest axis of a mesh when nothing is said.
 constexpr std::int64_t kDefaultVoxels = 256;
 
+// Of the finer lattice's points along the surface, so many may be inside too many or too few.
+constexpr double kCountError = 0.25;
+
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
 double voxelSizeFor(const TriangleMesh& mesh, const SolidOptions& options, const std::string& name,
@@ -57,11 +60,10 @@ ClosedMesh closed(LoadedMesh loaded, const std::string& name, const Progress& pr
     return result;
 }
 
-// The mesh's own volume: the integral of its winding number. That counts what lies in two parts twice, and nothing where
-// orientation is lost; so it is only taken where the lattice points inside, whose number errs by no more than half a
-// voxel along the surface, agree with it.
-std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, double voxel) {
-    if (input.repair.evenOdd) return std::nullopt;
+// The mesh's own volume: the integral of its winding number, where all of its parts are apart from each other and it agrees
+// with the finer lattice's points inside, whose number errs by far less than a point along the surface; else that number,
+// which counts what lies in two parts once.
+double volumeOf(const ClosedMesh& input, double voxel, const FineSigns& signs) {
     const TriangleMesh& mesh = input.loaded.mesh;
     const Vec3 from = toVec3(mesh.points.front());
     double six = 0, twiceArea = 0;
@@ -70,15 +72,17 @@ std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, doub
         six += dot(toVec3(mesh.points[t[0]]) - from, normal);
         twiceArea += length(normal);
     }
-    const double volume = std::abs(six) / 6;
-    if (std::abs(volumeInside(shape) - volume) > 0.5 * voxel * twiceArea / 2) return std::nullopt;
-    return volume;
+    const double exact = std::abs(six) / 6, counted = signs.volume() * voxel * voxel * voxel;
+    const double allowed = kCountError * voxel / signs.perVoxel() * twiceArea / 2;
+    const bool agree = !input.repair.evenOdd && !signs.hasBuried() && std::abs(counted - exact) <= allowed;
+    return agree ? exact : counted;
 }
 
 // What level 0 should have.
-void putTruth(InputReport& report, const ClosedMesh& input, const Shape& shape, double voxel) {
-    report.volume = volumeOf(input, shape, voxel);
-    if (!report.volume) return;
+void putTruth(InputReport& report, const ClosedMesh& input, double voxel, const FineSigns& signs) {
+    report.volume = volumeOf(input, voxel, signs);
+    // Parts that overlap are one solid, with other counts than they have one by one.
+    if (input.repair.evenOdd || signs.hasBuried()) return;
     const MeshTopology topology = topologyOf(input.loaded.mesh);
     if (!topology.closed() || !topology.manifold() || !topology.oriented()) return;
     report.parts = topology.parts;
@@ -102,15 +106,15 @@ InputReport reportOf(const ClosedMesh& input, const std::string& name, double vo
     return report;
 }
 
-WallSummary wallsFitted(BSplineField& field, const openvdb::FloatGrid& distance, const openvdb::Coord& shift,
-                        const TriangleMesh& mesh, double halfWidth, const Progress& progress) {
+std::vector<openvdb::Vec3d> inIndexSpace(const TriangleMesh& mesh, const openvdb::math::Transform& transform) {
     std::vector<openvdb::Vec3d> points;
     points.reserve(mesh.points.size());
-    for (const Point& p : mesh.points) points.push_back(distance.worldToIndex(openvdb::Vec3d(p.data())));
-    const WallFitReport report =
-        fitWalls(field, distance.constTree(), shift, points, mesh.triangles,
-                 {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth)}, progress);
-    return {report.rows,      report.sweeps,   report.unmet,      report.changed,
+    for (const Point& p : mesh.points) points.push_back(transform.worldToIndex(openvdb::Vec3d(p.data())));
+    return points;
+}
+
+WallSummary summaryOf(const WallFitReport& report) {
+    return {report.rows,      report.sweeps,   report.unmet,      report.between, report.changed,
             report.thickened, report.thinnest, report.leastRefine};
 }
 
@@ -136,13 +140,18 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
     };
     Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
+    const std::vector<openvdb::Vec3d> points = inIndexSpace(mesh, *transform);
+    const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd, progress);
     if (options.walls)
         samples.walls = [&](BSplineField& field, const openvdb::FloatGrid& grid,
                             const openvdb::Coord& shift) {
-            return wallsFitted(field, grid, shift, mesh, fitting.distance.halfWidth, progress);
+            const double halfWidth = fitting.distance.halfWidth;
+            return summaryOf(fitWalls(field, grid.constTree(), shift, points, mesh.triangles,
+                                      {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = &signs},
+                                      progress));
         };
     fit(solid, fitting, samples, limit, kRemedy, progress, clock);
-    putTruth(solid.input, input, *solid.field->shape, voxel);
+    putTruth(solid.input, input, voxel, signs);
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

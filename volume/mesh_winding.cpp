@@ -211,6 +211,15 @@ bool LatticeLines::inside(const openvdb::Coord& point) const {
     return (togglesBeyond(point).first - (toggles_.data() + start_[line])) % 2 != 0;
 }
 
+std::int64_t LatticeLines::insideCount() const {
+    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+    std::int64_t count = 0;
+    for (std::size_t line = 0; line + 1 < start_.size(); ++line)
+        for (std::uint32_t t = start_[line]; t + 1 < start_[line + 1] && toggles_[t] != kNone; t += 2)
+            count += toggles_[t + 1] - toggles_[t];
+    return count;
+}
+
 unsigned LatticeLines::inside8(const openvdb::Coord& low) const {
     if (low.y() < box_.min().y() || low.y() > box_.max().y() || low.z() < box_.min().z() ||
         low.z() > box_.max().z()) {

@@ -37,6 +37,9 @@ class LatticeLines {
     // Bit i: lattice point low + (i, 0, 0) is inside; i = 0..7.
     unsigned inside8(const openvdb::Coord& low) const;
 
+    // Lattice points inside.
+    std::int64_t insideCount() const;
+
     // Whether some line crosses the mesh between two lattice points that are inside: parts overlap or touch
     // there, or a slit is too thin for the lattice.
     bool hasBuried() const { return hasBuried_; }

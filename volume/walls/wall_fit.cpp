@@ -7,6 +7,7 @@
 
 #include "volume/padded_leaf.h"
 #include "volume/row_ascent.h"
+#include "volume/walls/between.h"
 #include "volume/walls/feet.h"
 #include "volume/walls/one_per_cell.h"
 #include "volume/walls/thin_places.h"
@@ -33,6 +34,7 @@ constexpr float kSoftness = 0.03F;
 constexpr float kThinSoftness = 0.003F;
 constexpr double kThin = 0.6;
 constexpr double kLeastValue = 1e-3;     // |F| that a sign row asks for, or |v|/2
+constexpr double kBetweenDepth = 0.02;   // |F| that a row between lattice points asks for, or |v|/8
 constexpr double kTolerance = 0.005;     // of F
 constexpr double kHardTolerance = 1e-5;  // of F, hard rows alone
 
@@ -71,6 +73,7 @@ class WallFit {
         addGaps(places);
         progress_("walls", 0.5);
         ascendAll(faces);
+        mendBetween(places);
         takeIn();
         progress_("walls", 1);
         return report_;
@@ -204,6 +207,53 @@ class WallFit {
         report_.sweeps = all.rounds + hard.rounds;
         report_.unmet = hard.unmet;
         report_.changed = std::max(all.changed, hard.changed);
+    }
+
+    // Whether the thickened walls and the closed gaps have a place outside the mesh inside.
+    bool isMeantInside(const WrongPlace& p) const {
+        return !p.inside && (p.distance <= outBy(thinBehind(p.foot, p.outwards)) || isClosed(p.foot, p.outwards));
+    }
+
+    // Signs that are still wrong between lattice points, where walls meet and at the mouths of slots: a row each, round by
+    // round near those of the last one.
+    void mendBetween(const ThinPlaces& places) {
+        static const double kBetween=atof(getenv("BL")?getenv("BL"):"0.1"); static const int kMendingRounds=atoi(getenv("BN")?getenv("BN"):"6"); static const float kBetweenSoftness=float(atof(getenv("BRHO")?getenv("BRHO"):"0.0005"));
+        if (!options_.between || kMendingRounds==0) return;
+        openvdb::MaskTree near = nearer(*places.near, kSignReach);
+        for (int round = 0; round < kMendingRounds; ++round) {
+            std::vector<WrongPlace> wrong = wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
+            std::erase_if(wrong, [this](const WrongPlace& p) { return isMeantInside(p); });
+            if (getenv("BV")) fprintf(stderr, "round %d: %zu wrong\n", round, wrong.size());
+            if (wrong.empty()) return;
+            const openvdb::MaskTree around = leavesAround(wrong);
+            for (const WrongPlace& p : wrong) {
+                rows_.push_back(row(p.at, p.inside ? 1 : -1, std::min(kBetweenDepth, p.distance / 8)));
+                rows_.back().rho = kBetweenSoftness;
+            }
+            report_.between += std::int64_t(wrong.size());
+            const AscentReport mended = ascend(field_, rowsIn(around), {.tolerance = kHardTolerance * scale_, .rounds = options_.rounds}, progress_);
+            report_.changed = std::max(report_.changed, mended.changed);
+            near.topologyIntersection(around);
+        }
+    }
+
+    // The leaves that hold these places, and those beside them.
+    static openvdb::MaskTree leavesAround(const std::vector<WrongPlace>& places) {
+        openvdb::MaskTree around;
+        for (const WrongPlace& p : places) {
+            const Coord origin = Coord::floor(p.at) & ~7;
+            around.fill({origin.offsetBy(-8), origin.offsetBy(15)}, true);
+        }
+        around.voxelizeActiveTiles();
+        return around;
+    }
+
+    std::vector<FieldRow> rowsIn(const openvdb::MaskTree& mask) const {
+        std::vector<FieldRow> rows;
+        const openvdb::tree::ValueAccessor<const openvdb::MaskTree> accessor(mask);
+        for (const FieldRow& row : rows_)
+            if (accessor.isValueOn(Coord::floor(row.at) - shift_)) rows.push_back(row);
+        return rows;
     }
 
     BSplineField& field_;
