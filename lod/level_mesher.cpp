@@ -34,10 +34,11 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;      // of the volume to keep
-constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
-constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
-constexpr int kFinestRefine = 4;         // that polygonize() takes
+constexpr double kPreserved = 1e-4;                               // of the volume to keep
+constexpr std::int64_t kMostEdits = 40;                           // that nobody asked for: they take seconds
+constexpr EditEffort kUnaskedEffort{.rounds = 3, .deep = false};  // at level 0, whose lattice is the finest
+constexpr double kHeldVoxels = 1.5;  // walls so thick are held as they are at any place
+constexpr int kFinestRefine = 4;     // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
     if (options.preserveVolume && options.hold == Holding::shift)
@@ -201,7 +202,8 @@ void LevelMesher::putFeatures(LevelMesh& level, const SpeckRemoval& removal) con
 
 // What is smaller goes.
 double LevelMesher::smallestAt(int step, const BSplineField& field) const {
-    return step == 0 || options_.keepSpecks ? 0 : nodeVolume(field.transform());
+    if (options_.keepSpecks) return 0;
+    return step == 0 ? smallest0_ : nodeVolume(field.transform());
 }
 
 BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const {
@@ -242,7 +244,8 @@ void LevelMesher::limit(LevelMesh& level) {
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
-    if (falls && !options_.maxGenus && !options_.maxParts && excess(counts, *before_) > kMostEdits) {
+    const bool asked = options_.maxGenus || options_.maxParts;
+    if (falls && !asked && excess(counts, *before_) > kMostEdits) {
         report.limitsMissed = fmt::format(
             "{} parts, handles and cavities more than {}, too many to cut and fill unasked; give "
             "--max-genus or --max-parts",
@@ -255,8 +258,8 @@ void LevelMesher::limit(LevelMesh& level) {
     }
     {
         const StageClock::Scope scope(clock_, "cut and fill");
-        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
-                   progress_);
+        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field),
+                   report.step == 0 && !asked ? kUnaskedEffort : EditEffort{}, report, progress_);
     }
     if (!report.edits.empty()) drawAll(level, {});
 }
@@ -272,8 +275,19 @@ LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& fi
     return fewer ? std::move(finer) : std::move(level);
 }
 
+// Level 0 keeps its specks, but those of the fit, which the input does not have.
+LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) {
+    Sampled sampled = sampledAsInput(field);
+    if (truth_.counts && !sampled.mesh.triangles.empty()) {
+        const SolidCounts counts = countsOf(topologyOf(sampled.mesh));
+        const bool more = counts.parts > truth_.counts->parts || counts.cavities > truth_.counts->cavities;
+        if (more) smallest0_ = nodeVolume(field.transform());
+    }
+    return sampled;
+}
+
 // The least that gives the input's parts, handles and cavities, and its volume as nearly as a finer one does.
-LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) const {
+LevelMesher::Sampled LevelMesher::sampledAsInput(const BSplineField& field) const {
     constexpr double kNear = 0.005, kNoNearer = 0.002;  // of the volume
     if (options_.hold != Holding::local || openBorder_ || !truth_.volume) return {};
     const auto isRight = [&](const MeshTopology& t) {
@@ -346,10 +360,11 @@ void LevelMesher::tellDifference(const LevelReport& report) const {
                            counted(c.cavities, "cavity", "cavities"));
     };
     const double thinnest = report.walls.empty() ? 1.0 : report.walls.front().voxels;
-    progress_.say(fmt::format("level 0 is not the input: {}{:+.2g} % of its volume; voxels {:.2g} times as large "
-                              "would hold it better",
-                              differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
-                              std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
+    progress_.say(
+        fmt::format("level 0 is not the input: {}{:+.2g} % of its volume; voxels {:.2g} times as large "
+                    "would hold it better",
+                    differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
+                    std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
 }
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {
@@ -376,7 +391,7 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest, TriangleMesh r
     return removal;
 }
 
-LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) const {
+LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) {
     if (options_.refine) return {*options_.refine};
     if (step == 0) return sampledLevel0(field);
     return {holds(step) ? level0_->hold->refineFor(field) : 1};

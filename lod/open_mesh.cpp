@@ -12,6 +12,7 @@
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "polygonize/topology.h"
 #include "volume/distance.h"
 #include "volume/mesh_repair.h"
 #include "volume/walls/wall_fit.h"
@@ -74,17 +75,20 @@ double volumeOf(const ClosedMesh& input, double voxel, const FineSigns& signs) {
     }
     const double exact = std::abs(six) / 6, counted = signs.volume() * voxel * voxel * voxel;
     const double allowed = kCountError * voxel / signs.perVoxel() * twiceArea / 2;
-    const bool agree = !input.repair.evenOdd && !signs.hasBuried() && std::abs(counted - exact) <= allowed;
+    const bool agree =
+        !input.repair.evenOdd && !signs.lines().hasOverlap() && std::abs(counted - exact) <= allowed;
     return agree ? exact : counted;
 }
 
 // What level 0 should have.
-void putTruth(InputReport& report, const ClosedMesh& input, double voxel, const FineSigns& signs) {
+void putTruth(InputReport& report, const ClosedMesh& input, double voxel,
+              const std::vector<openvdb::Vec3d>& points, const FineSigns& signs) {
     report.volume = volumeOf(input, voxel, signs);
-    // Parts that overlap are one solid, with other counts than they have one by one.
-    if (input.repair.evenOdd || signs.hasBuried()) return;
-    const MeshTopology topology = topologyOf(input.loaded.mesh);
-    if (!topology.closed() || !topology.manifold() || !topology.oriented()) return;
+    const TriangleMesh& mesh = input.loaded.mesh;
+    const MeshTopology topology = topologyOf(mesh);
+    if (input.repair.evenOdd || !topology.closed() || !topology.manifold() || !topology.oriented()) return;
+    const MeshComponents components = componentsOf(mesh);
+    if (componentsTouch(points, mesh.triangles, components.of, components.count(), signs)) return;
     report.parts = topology.parts;
     report.handles = topology.genus;
     report.cavities = topology.cavities;
@@ -106,7 +110,8 @@ InputReport reportOf(const ClosedMesh& input, const std::string& name, double vo
     return report;
 }
 
-std::vector<openvdb::Vec3d> inIndexSpace(const TriangleMesh& mesh, const openvdb::math::Transform& transform) {
+std::vector<openvdb::Vec3d> inIndexSpace(const TriangleMesh& mesh,
+                                         const openvdb::math::Transform& transform) {
     std::vector<openvdb::Vec3d> points;
     points.reserve(mesh.points.size());
     for (const Point& p : mesh.points) points.push_back(transform.worldToIndex(openvdb::Vec3d(p.data())));
@@ -114,8 +119,8 @@ std::vector<openvdb::Vec3d> inIndexSpace(const TriangleMesh& mesh, const openvdb
 }
 
 WallSummary summaryOf(const WallFitReport& report) {
-    return {report.rows,      report.sweeps,   report.unmet,      report.between, report.changed,
-            report.thickened, report.thinnest, report.leastRefine};
+    return {report.rows,    report.sweeps,    report.unmet,    report.between,
+            report.changed, report.thickened, report.thinnest, report.leastRefine};
 }
 
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
@@ -141,17 +146,18 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
     };
     Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
     const std::vector<openvdb::Vec3d> points = inIndexSpace(mesh, *transform);
-    const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd, progress);
+    const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
+                          progress);
     if (options.walls)
         samples.walls = [&](BSplineField& field, const openvdb::FloatGrid& grid,
                             const openvdb::Coord& shift) {
             const double halfWidth = fitting.distance.halfWidth;
-            return summaryOf(fitWalls(field, grid.constTree(), shift, points, mesh.triangles,
-                                      {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = &signs},
-                                      progress));
+            return summaryOf(fitWalls(
+                field, grid.constTree(), shift, points, mesh.triangles,
+                {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = &signs}, progress));
         };
     fit(solid, fitting, samples, limit, kRemedy, progress, clock);
-    putTruth(solid.input, input, voxel, signs);
+    putTruth(solid.input, input, voxel, points, signs);
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

@@ -116,6 +116,27 @@ FineSigns::FineSigns(const std::vector<Vec3d>& points, const std::vector<Triangl
                      bool evenOdd, const Progress& progress)
     : perVoxel_(perVoxel), lines_(scaled(points, perVoxel), triangles, evenOdd, progress) {}
 
+bool componentsTouch(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles,
+                     const std::vector<std::uint32_t>& of, std::size_t components, const FineSigns& signs) {
+    if (signs.lines().hasOverlap()) return true;
+    if (components < 2 || !signs.lines().hasBuried()) return false;
+    std::vector<std::vector<Triangle>> parts(components);
+    for (const Triangle& t : triangles) parts[of[t[0]]].push_back(t);
+    // Of a cavity alone the inside is what is outside of the solid.
+    const auto own = [&](const std::vector<Triangle>& part) {
+        double six = 0;
+        for (const Triangle& t : part)
+            six += (points[t[0]] - points[part[0][0]])
+                       .dot((points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]));
+        const FineSigns alone(points, part, signs.perVoxel(), false);
+        return six < 0 ? alone.lines().skippedCount() : alone.lines().buriedCount();
+    };
+    std::int64_t within = 0;
+    for (const auto& part : parts)
+        if (!part.empty()) within += own(part);
+    return signs.lines().buriedCount() > within;
+}
+
 int finestSigns(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles) {
     double twiceArea = 0;
     for (const Triangle& t : triangles)

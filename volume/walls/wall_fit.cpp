@@ -33,8 +33,14 @@ constexpr float kSoftness = 0.03F;
 // The same for walls below kThin voxels: with 0.03 a wall of 0.35 in a tube is 5 % thicker.
 constexpr float kThinSoftness = 0.003F;
 constexpr double kThin = 0.6;
-constexpr double kLeastValue = 1e-3;     // |F| that a sign row asks for, or |v|/2
-constexpr double kBetweenDepth = 0.02;   // |F| that a row between lattice points asks for, or |v|/8
+constexpr double kLeastValue = 1e-3;  // |F| that a sign row asks for, or |v|/2
+// Between lattice points: how far from the mesh a wrong sign counts (0.1: bars of 0.6 come out 15 instead of 6 % thicker),
+// how often these are looked for, |F| that their rows ask for, or |v|/8, and their rho (0, hard: a row of walls and gaps
+// below what a spline can hold would push the others about).
+constexpr double kBetween = 0.06;
+constexpr int kMendingRounds = 6;
+constexpr double kBetweenDepth = 0.02;
+constexpr float kBetweenSoftness = 0.001F;
 constexpr double kTolerance = 0.005;     // of F
 constexpr double kHardTolerance = 1e-5;  // of F, hard rows alone
 
@@ -211,19 +217,19 @@ class WallFit {
 
     // Whether the thickened walls and the closed gaps have a place outside the mesh inside.
     bool isMeantInside(const WrongPlace& p) const {
-        return !p.inside && (p.distance <= outBy(thinBehind(p.foot, p.outwards)) || isClosed(p.foot, p.outwards));
+        return !p.inside &&
+               (p.distance <= outBy(thinBehind(p.foot, p.outwards)) || isClosed(p.foot, p.outwards));
     }
 
     // Signs that are still wrong between lattice points, where walls meet and at the mouths of slots: a row each, round by
     // round near those of the last one.
     void mendBetween(const ThinPlaces& places) {
-        static const double kBetween=atof(getenv("BL")?getenv("BL"):"0.1"); static const int kMendingRounds=atoi(getenv("BN")?getenv("BN"):"6"); static const float kBetweenSoftness=float(atof(getenv("BRHO")?getenv("BRHO"):"0.0005"));
-        if (!options_.between || kMendingRounds==0) return;
+        if (!options_.between) return;
         openvdb::MaskTree near = nearer(*places.near, kSignReach);
         for (int round = 0; round < kMendingRounds; ++round) {
-            std::vector<WrongPlace> wrong = wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
+            std::vector<WrongPlace> wrong =
+                wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
             std::erase_if(wrong, [this](const WrongPlace& p) { return isMeantInside(p); });
-            if (getenv("BV")) fprintf(stderr, "round %d: %zu wrong\n", round, wrong.size());
             if (wrong.empty()) return;
             const openvdb::MaskTree around = leavesAround(wrong);
             for (const WrongPlace& p : wrong) {
@@ -231,7 +237,9 @@ class WallFit {
                 rows_.back().rho = kBetweenSoftness;
             }
             report_.between += std::int64_t(wrong.size());
-            const AscentReport mended = ascend(field_, rowsIn(around), {.tolerance = kHardTolerance * scale_, .rounds = options_.rounds}, progress_);
+            const AscentReport mended =
+                ascend(field_, rowsIn(around),
+                       {.tolerance = kHardTolerance * scale_, .rounds = options_.rounds}, progress_);
             report_.changed = std::max(report_.changed, mended.changed);
             near.topologyIntersection(around);
         }

@@ -17,9 +17,9 @@ struct WallFitOptions {
     // for these are thickened until they are `sigma` sampling steps thick.
     int refine = 4;
     double sigma = 1.05;
-    double widest = 4;  // walls and gaps up to this thickness, voxels; at most 4
+    double widest = 4;                   // walls and gaps up to this thickness, voxels; at most 4
     const FineSigns* between = nullptr;  // signs to ask for between lattice points, too; none: only at these
-    int rounds = 60;    // of the ascent, at most; and as many for its last part
+    int rounds = 60;                     // of the ascent, at most; and as many for its last part
 };
 
 struct WallFitReport {
