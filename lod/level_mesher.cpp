@@ -34,11 +34,10 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;                               // of the volume to keep
-constexpr std::int64_t kMostEdits = 40;                           // that nobody asked for: they take seconds
-constexpr EditEffort kUnaskedEffort{.rounds = 3, .deep = false};  // at level 0, whose lattice is the finest
-constexpr double kHeldVoxels = 1.5;  // walls so thick are held as they are at any place
-constexpr int kFinestRefine = 4;     // that polygonize() takes
+constexpr double kPreserved = 1e-4;      // of the volume to keep
+constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
+constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
+constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
     if (options.preserveVolume && options.hold == Holding::shift)
@@ -99,7 +98,6 @@ LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
-    if (options.hold == Holding::local) before_ = truth.counts;
 }
 
 LevelMesher::~LevelMesher() = default;
@@ -237,19 +235,19 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
     return level;
 }
 
-// From the input to level 0 and from level to level nothing becomes more, and nothing is more than was asked for.
+// From level to level nothing becomes more, and nothing is more than was asked for.
 void LevelMesher::limit(LevelMesh& level) {
     LevelReport& report = level.report;
-    const bool falls = options_.hold == Holding::local && before_;
+    const bool falls = options_.hold == Holding::local && before_ && report.step != 0;
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
     const bool asked = options_.maxGenus || options_.maxParts;
     if (falls && !asked && excess(counts, *before_) > kMostEdits) {
         report.limitsMissed = fmt::format(
-            "{} parts, handles and cavities more than {}, too many to cut and fill unasked; give "
-            "--max-genus or --max-parts",
-            excess(counts, *before_), report.step == 0 ? "the input" : "the level before");
+            "{} parts, handles and cavities more than the level before, too many to cut and fill unasked; "
+            "give --max-genus or --max-parts",
+            excess(counts, *before_));
         return;
     }
     if (level.iso != 0) {
@@ -258,8 +256,8 @@ void LevelMesher::limit(LevelMesh& level) {
     }
     {
         const StageClock::Scope scope(clock_, "cut and fill");
-        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field),
-                   report.step == 0 && !asked ? kUnaskedEffort : EditEffort{}, report, progress_);
+        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), {}, report,
+                   progress_);
     }
     if (!report.edits.empty()) drawAll(level, {});
 }

@@ -32,7 +32,7 @@ struct LevelMesh {
 class LevelMesher {
   public:
     enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
-    // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. With Holding::local level 0 has no more parts, handles and cavities than it. Throws UsageError for options that exclude each other.
+    // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
     LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
                 const InputTruth& truth, const Progress& progress, StageClock& clock);
     ~LevelMesher();
@@ -90,7 +90,7 @@ class LevelMesher {
     InputTruth truth_;
     double smallest0_ =
         0;  // what is smaller goes at step 0: what the input has no more parts and cavities for
-    std::optional<SolidCounts> before_;  // of the step made before; at first the input's, where it is known
+    std::optional<SolidCounts> before_;  // of the step made before
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

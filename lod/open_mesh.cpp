@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "base/triangle.h"
+#include "hold/solid_limits.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "isowave/measure.h"
@@ -25,6 +26,8 @@ constexpr std::int64_t kDefaultVoxels = 256;
 
 // Of the finer lattice's points along the surface, so many may be inside too many or too few.
 constexpr double kCountError = 0.25;
+
+constexpr int kFinestRefine = 4;  // of polygonize()
 
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
@@ -123,6 +126,20 @@ WallSummary summaryOf(const WallFitReport& report) {
             report.changed, report.thickened, report.thinnest, report.leastRefine};
 }
 
+// By how much the counts of the input and of the field's mesh differ.
+std::int64_t missed(const Solid::State& solid, int refine, const Progress& progress) {
+    const SolidCounts counts = meshedCounts(*solid.field, refine, 0, progress);
+    return std::abs(counts.parts - *solid.input.parts) + std::abs(counts.handles - *solid.input.handles) +
+           std::abs(counts.cavities - *solid.input.cavities);
+}
+
+// Whether rows between lattice points have left what the input does not have: where they contradict each other (a pocket
+// whose walls come nearer and nearer) they may tear what was whole without them.
+bool missesBetween(const Solid::State& solid, const Progress& progress) {
+    return solid.fit->walls && solid.fit->walls->between > 0 && solid.input.parts &&
+           missed(solid, 2, progress) > 0;
+}
+
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const TriangleMesh& mesh = input.loaded.mesh;
@@ -148,16 +165,25 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
     const std::vector<openvdb::Vec3d> points = inIndexSpace(mesh, *transform);
     const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
                           progress);
-    if (options.walls)
-        samples.walls = [&](BSplineField& field, const openvdb::FloatGrid& grid,
-                            const openvdb::Coord& shift) {
-            const double halfWidth = fitting.distance.halfWidth;
-            return summaryOf(fitWalls(
-                field, grid.constTree(), shift, points, mesh.triangles,
-                {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = &signs}, progress));
-        };
-    fit(solid, fitting, samples, limit, kRemedy, progress, clock);
+    const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
+        if (options.walls)
+            samples.walls = [&, between](BSplineField& field, const openvdb::FloatGrid& grid,
+                                         const openvdb::Coord& shift) {
+                const double halfWidth = fitting.distance.halfWidth;
+                return summaryOf(
+                    fitWalls(field, grid.constTree(), shift, points, mesh.triangles,
+                             {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = between},
+                             progress));
+            };
+        fit(made, fitting, samples, limit, kRemedy, progress, clock);
+    };
     putTruth(solid.input, input, voxel, points, signs);
+    fitAll(solid, &signs);
+    if (missesBetween(solid, progress)) {
+        Solid::State plain = solid;
+        fitAll(plain, nullptr);
+        if (missed(plain, kFinestRefine, progress) < missed(solid, kFinestRefine, progress)) solid = plain;
+    }
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

@@ -38,6 +38,7 @@ constexpr double kLeastValue = 1e-3;  // |F| that a sign row asks for, or |v|/2
 // how often these are looked for, |F| that their rows ask for, or |v|/8, and their rho (0, hard: a row of walls and gaps
 // below what a spline can hold would push the others about).
 constexpr double kBetween = 0.06;
+constexpr double kFeather = 0.3;
 constexpr int kMendingRounds = 6;
 constexpr double kBetweenDepth = 0.02;
 constexpr float kBetweenSoftness = 0.001F;
@@ -216,6 +217,14 @@ class WallFit {
     }
 
     // Whether the thickened walls and the closed gaps have a place outside the mesh inside.
+    // The faces of a thin gap, or of a wall that ends in an edge, cannot all be where they should: the thinner, the more
+    // is left.
+    bool isTolerable(const WrongPlace& p) const {
+        const Vec3d beyond = p.inside ? Vec3d(-p.outwards) : p.outwards;
+        const double t = wallBehind(p.foot, beyond, 1.0, triangles_).thickness;
+        const double widest = p.inside ? 1.0 : kFeather, more = p.inside ? 0.2 : 0.1;
+        return t > 0 && t < widest && p.distance < kBetween + more * (1 - t);
+    }
     bool isMeantInside(const WrongPlace& p) const {
         return !p.inside &&
                (p.distance <= outBy(thinBehind(p.foot, p.outwards)) || isClosed(p.foot, p.outwards));
@@ -226,11 +235,8 @@ class WallFit {
     void mendBetween(const ThinPlaces& places) {
         if (!options_.between) return;
         openvdb::MaskTree near = nearer(*places.near, kSignReach);
-        for (int round = 0; round < kMendingRounds; ++round) {
-            std::vector<WrongPlace> wrong =
-                wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
-            std::erase_if(wrong, [this](const WrongPlace& p) { return isMeantInside(p); });
-            if (wrong.empty()) return;
+        std::vector<WrongPlace> wrong = wrongIn(near);
+        for (int round = 0; round < kMendingRounds && !wrong.empty(); ++round) {
             const openvdb::MaskTree around = leavesAround(wrong);
             for (const WrongPlace& p : wrong) {
                 rows_.push_back(row(p.at, p.inside ? 1 : -1, std::min(kBetweenDepth, p.distance / 8)));
@@ -242,7 +248,15 @@ class WallFit {
                        {.tolerance = kHardTolerance * scale_, .rounds = options_.rounds}, progress_);
             report_.changed = std::max(report_.changed, mended.changed);
             near.topologyIntersection(around);
+            wrong = wrongIn(near);
         }
+    }
+
+    std::vector<WrongPlace> wrongIn(const openvdb::MaskTree& near) const {
+        std::vector<WrongPlace> wrong =
+            wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
+        std::erase_if(wrong, [this](const WrongPlace& p) { return isMeantInside(p) || isTolerable(p); });
+        return wrong;
     }
 
     // The leaves that hold these places, and those beside them.
