@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "hold/cut_or_fill.h"
-
 namespace isowave {
 namespace {
 
@@ -35,9 +33,9 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 }
 
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                LevelReport& report, const Progress& progress) {
+                const EditEffort& effort, LevelReport& report, const Progress& progress) {
     if (!limits.any()) return;
-    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, progress);
+    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, effort, progress);
     for (const TopologyEdit& edit : edits.edits)
         report.edits.push_back({edit.kind == TopologyEdit::Kind::fill,
                                 featureOf(edit.what),

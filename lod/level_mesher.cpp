@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number_text.h"
 #include "hold/hold.h"
 #include "hold/limit_level.h"
 #include "isowave/error.h"
@@ -35,6 +36,7 @@ namespace {
 
 constexpr double kPreserved = 1e-4;      // of the volume to keep
 constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
+constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
 constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
@@ -198,7 +200,8 @@ void LevelMesher::putFeatures(LevelMesh& level, const SpeckRemoval& removal) con
 
 // What is smaller goes.
 double LevelMesher::smallestAt(int step, const BSplineField& field) const {
-    return step == 0 || options_.keepSpecks ? 0 : nodeVolume(field.transform());
+    if (options_.keepSpecks) return 0;
+    return step == 0 ? smallest0_ : nodeVolume(field.transform());
 }
 
 BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const {
@@ -214,6 +217,7 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     if (step == 0) {
         level0_->counts = *before_;
         tellWalls(level.report);
+        tellDifference(level.report);
     }
     return level;
 }
@@ -234,14 +238,15 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
 // From level to level nothing becomes more, and nothing is more than was asked for.
 void LevelMesher::limit(LevelMesh& level) {
     LevelReport& report = level.report;
-    const bool falls = options_.hold == Holding::local && report.step != 0;
+    const bool falls = options_.hold == Holding::local && before_ && report.step != 0;
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
-    if (falls && !options_.maxGenus && !options_.maxParts && excess(counts, *before_) > kMostEdits) {
+    const bool asked = options_.maxGenus || options_.maxParts;
+    if (falls && !asked && excess(counts, *before_) > kMostEdits) {
         report.limitsMissed = fmt::format(
-            "{} parts, handles and cavities more than the level before, too many to cut and fill "
-            "unasked; give --max-genus or --max-parts",
+            "{} parts, handles and cavities more than the level before, too many to cut and fill unasked; "
+            "give --max-genus or --max-parts",
             excess(counts, *before_));
         return;
     }
@@ -251,7 +256,7 @@ void LevelMesher::limit(LevelMesh& level) {
     }
     {
         const StageClock::Scope scope(clock_, "cut and fill");
-        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
+        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), {}, report,
                    progress_);
     }
     if (!report.edits.empty()) drawAll(level, {});
@@ -268,8 +273,19 @@ LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& fi
     return fewer ? std::move(finer) : std::move(level);
 }
 
+// Level 0 keeps its specks, but those of the fit, which the input does not have.
+LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) {
+    Sampled sampled = sampledAsInput(field);
+    if (truth_.counts && !sampled.mesh.triangles.empty()) {
+        const SolidCounts counts = countsOf(topologyOf(sampled.mesh));
+        const bool more = counts.parts > truth_.counts->parts || counts.cavities > truth_.counts->cavities;
+        if (more) smallest0_ = nodeVolume(field.transform());
+    }
+    return sampled;
+}
+
 // The least that gives the input's parts, handles and cavities, and its volume as nearly as a finer one does.
-LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) const {
+LevelMesher::Sampled LevelMesher::sampledAsInput(const BSplineField& field) const {
     constexpr double kNear = 0.005, kNoNearer = 0.002;  // of the volume
     if (options_.hold != Holding::local || openBorder_ || !truth_.volume) return {};
     const auto isRight = [&](const MeshTopology& t) {
@@ -329,6 +345,26 @@ void LevelMesher::tellWalls(LevelReport& report) const {
     progress_.say("the thinnest 1, 5, 50 % of the walls are" + text);
 }
 
+// Silence would mean that level 0 is the input.
+void LevelMesher::tellDifference(const LevelReport& report) const {
+    constexpr double kTold = 0.02;  // of the volume
+    if (openBorder_ || !truth_.volume) return;
+    const SolidCounts counts = countsOf(report.topology);
+    const bool differs = truth_.counts && counts != *truth_.counts;
+    const double error = report.topology.volume / *truth_.volume - 1;
+    if (!differs && std::abs(error) <= kTold) return;
+    const auto text = [](const SolidCounts& c) {
+        return fmt::format("{}, {}, {}", counted(c.parts, "part"), counted(c.handles, "handle"),
+                           counted(c.cavities, "cavity", "cavities"));
+    };
+    const double thinnest = report.walls.empty() ? 1.0 : report.walls.front().voxels;
+    progress_.say(
+        fmt::format("level 0 is not the input: {}{:+.2g} % of its volume; voxels {:.2g} times as large "
+                    "would hold it better",
+                    differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
+                    std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
+}
+
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {
     double iso = 0;
     if (options_.preserveVolume && volumeToKeep() > 0)
@@ -353,7 +389,7 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest, TriangleMesh r
     return removal;
 }
 
-LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) const {
+LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) {
     if (options_.refine) return {*options_.refine};
     if (step == 0) return sampledLevel0(field);
     return {holds(step) ? level0_->hold->refineFor(field) : 1};

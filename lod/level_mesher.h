@@ -60,8 +60,9 @@ class LevelMesher {
         int refine = 1;
         TriangleMesh mesh = {};
     };
-    Sampled sampled(int step, const BSplineField& field) const;
-    Sampled sampledLevel0(const BSplineField& field) const;
+    Sampled sampled(int step, const BSplineField& field);
+    Sampled sampledLevel0(const BSplineField& field);
+    Sampled sampledAsInput(const BSplineField& field) const;
     LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
     LevelMesh chosen(int step, const BSplineField& field);
     void limit(LevelMesh& level);
@@ -70,6 +71,7 @@ class LevelMesher {
     bool holds(int step) const;
     void hold(LevelMesh& level) const;
     void tellWalls(LevelReport& report) const;
+    void tellDifference(const LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
     SpeckRemoval draw(LevelMesh& level, double smallest, TriangleMesh ready);
@@ -86,6 +88,8 @@ class LevelMesher {
     std::optional<Border> openBorder_;
     bool wantsThin_;
     InputTruth truth_;
+    double smallest0_ =
+        0;  // what is smaller goes at step 0: what the input has no more parts and cavities for
     std::optional<SolidCounts> before_;  // of the step made before
     const Progress& progress_;
     StageClock& clock_;

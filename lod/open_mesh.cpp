@@ -7,11 +7,13 @@
 
 #include "base/number_text.h"
 #include "base/triangle.h"
+#include "hold/solid_limits.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "polygonize/topology.h"
 #include "volume/distance.h"
 #include "volume/mesh_repair.h"
 #include "volume/walls/wall_fit.h"
@@ -21,6 +23,11 @@ namespace {
 
 // Voxels along the longest axis of a mesh when nothing is said.
 constexpr std::int64_t kDefaultVoxels = 256;
+
+// Of the finer lattice's points along the surface, so many may be inside too many or too few.
+constexpr double kCountError = 0.25;
+
+constexpr int kFinestRefine = 4;  // of polygonize()
 
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
@@ -57,11 +64,10 @@ ClosedMesh closed(LoadedMesh loaded, const std::string& name, const Progress& pr
     return result;
 }
 
-// The mesh's own volume: the integral of its winding number. That counts what lies in two parts twice, and nothing where
-// orientation is lost; so it is only taken where the lattice points inside, whose number errs by no more than half a
-// voxel along the surface, agree with it.
-std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, double voxel) {
-    if (input.repair.evenOdd) return std::nullopt;
+// The mesh's own volume: the integral of its winding number, where all of its parts are apart from each other and it agrees
+// with the finer lattice's points inside, whose number errs by far less than a point along the surface; else that number,
+// which counts what lies in two parts once.
+double volumeOf(const ClosedMesh& input, double voxel, const FineSigns& signs) {
     const TriangleMesh& mesh = input.loaded.mesh;
     const Vec3 from = toVec3(mesh.points.front());
     double six = 0, twiceArea = 0;
@@ -70,17 +76,22 @@ std::optional<double> volumeOf(const ClosedMesh& input, const Shape& shape, doub
         six += dot(toVec3(mesh.points[t[0]]) - from, normal);
         twiceArea += length(normal);
     }
-    const double volume = std::abs(six) / 6;
-    if (std::abs(volumeInside(shape) - volume) > 0.5 * voxel * twiceArea / 2) return std::nullopt;
-    return volume;
+    const double exact = std::abs(six) / 6, counted = signs.volume() * voxel * voxel * voxel;
+    const double allowed = kCountError * voxel / signs.perVoxel() * twiceArea / 2;
+    const bool agree =
+        !input.repair.evenOdd && !signs.lines().hasOverlap() && std::abs(counted - exact) <= allowed;
+    return agree ? exact : counted;
 }
 
 // What level 0 should have.
-void putTruth(InputReport& report, const ClosedMesh& input, const Shape& shape, double voxel) {
-    report.volume = volumeOf(input, shape, voxel);
-    if (!report.volume) return;
-    const MeshTopology topology = topologyOf(input.loaded.mesh);
-    if (!topology.closed() || !topology.manifold() || !topology.oriented()) return;
+void putTruth(InputReport& report, const ClosedMesh& input, double voxel,
+              const std::vector<openvdb::Vec3d>& points, const FineSigns& signs) {
+    report.volume = volumeOf(input, voxel, signs);
+    const TriangleMesh& mesh = input.loaded.mesh;
+    const MeshTopology topology = topologyOf(mesh);
+    if (input.repair.evenOdd || !topology.closed() || !topology.manifold() || !topology.oriented()) return;
+    const MeshComponents components = componentsOf(mesh);
+    if (componentsTouch(points, mesh.triangles, components.of, components.count(), signs)) return;
     report.parts = topology.parts;
     report.handles = topology.genus;
     report.cavities = topology.cavities;
@@ -102,16 +113,31 @@ InputReport reportOf(const ClosedMesh& input, const std::string& name, double vo
     return report;
 }
 
-WallSummary wallsFitted(BSplineField& field, const openvdb::FloatGrid& distance, const openvdb::Coord& shift,
-                        const TriangleMesh& mesh, double halfWidth, const Progress& progress) {
+std::vector<openvdb::Vec3d> inIndexSpace(const TriangleMesh& mesh,
+                                         const openvdb::math::Transform& transform) {
     std::vector<openvdb::Vec3d> points;
     points.reserve(mesh.points.size());
-    for (const Point& p : mesh.points) points.push_back(distance.worldToIndex(openvdb::Vec3d(p.data())));
-    const WallFitReport report =
-        fitWalls(field, distance.constTree(), shift, points, mesh.triangles,
-                 {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth)}, progress);
-    return {report.rows,      report.sweeps,   report.unmet,      report.changed,
-            report.thickened, report.thinnest, report.leastRefine};
+    for (const Point& p : mesh.points) points.push_back(transform.worldToIndex(openvdb::Vec3d(p.data())));
+    return points;
+}
+
+WallSummary summaryOf(const WallFitReport& report) {
+    return {report.rows,    report.sweeps,    report.unmet,    report.between,
+            report.changed, report.thickened, report.thinnest, report.leastRefine};
+}
+
+// By how much the counts of the input and of the field's mesh differ.
+std::int64_t missed(const Solid::State& solid, int refine, const Progress& progress) {
+    const SolidCounts counts = meshedCounts(*solid.field, refine, 0, progress);
+    return std::abs(counts.parts - *solid.input.parts) + std::abs(counts.handles - *solid.input.handles) +
+           std::abs(counts.cavities - *solid.input.cavities);
+}
+
+// Whether rows between lattice points have left what the input does not have: where they contradict each other (a pocket
+// whose walls come nearer and nearer) they may tear what was whole without them.
+bool missesBetween(const Solid::State& solid, const Progress& progress) {
+    return solid.fit->walls && solid.fit->walls->between > 0 && solid.input.parts &&
+           missed(solid, 2, progress) > 0;
 }
 
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
@@ -136,13 +162,28 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
     };
     Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
-    if (options.walls)
-        samples.walls = [&](BSplineField& field, const openvdb::FloatGrid& grid,
-                            const openvdb::Coord& shift) {
-            return wallsFitted(field, grid, shift, mesh, fitting.distance.halfWidth, progress);
-        };
-    fit(solid, fitting, samples, limit, kRemedy, progress, clock);
-    putTruth(solid.input, input, *solid.field->shape, voxel);
+    const std::vector<openvdb::Vec3d> points = inIndexSpace(mesh, *transform);
+    const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
+                          progress);
+    const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
+        if (options.walls)
+            samples.walls = [&, between](BSplineField& field, const openvdb::FloatGrid& grid,
+                                         const openvdb::Coord& shift) {
+                const double halfWidth = fitting.distance.halfWidth;
+                return summaryOf(
+                    fitWalls(field, grid.constTree(), shift, points, mesh.triangles,
+                             {.halfWidth = halfWidth, .widest = std::min(4.0, halfWidth), .between = between},
+                             progress));
+            };
+        fit(made, fitting, samples, limit, kRemedy, progress, clock);
+    };
+    putTruth(solid.input, input, voxel, points, signs);
+    fitAll(solid, &signs);
+    if (missesBetween(solid, progress)) {
+        Solid::State plain = solid;
+        fitAll(plain, nullptr);
+        if (missed(plain, kFinestRefine, progress) < missed(solid, kFinestRefine, progress)) solid = plain;
+    }
     requireSurface(*solid.field, name,
                    "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;

@@ -129,6 +129,7 @@ void putWalls(const WallSummary& walls, FieldList& list) {
     list.put("walls_rows", walls.rows);
     list.put("walls_sweeps", walls.sweeps);
     list.put("walls_unmet", walls.unmet);
+    list.put("walls_between", walls.between);
     list.put("walls_changed", walls.changed);
     list.put("walls_thickened", walls.thickened);
     list.put("walls_thinnest", walls.thinnest);
@@ -142,6 +143,7 @@ std::optional<WallSummary> wallsOf(const Json& fit) {
     walls.rows = *rows;
     walls.sweeps = valueOf<int>(fit, "walls_sweeps").value_or(0);
     walls.unmet = valueOf<std::int64_t>(fit, "walls_unmet").value_or(0);
+    walls.between = valueOf<std::int64_t>(fit, "walls_between").value_or(0);
     walls.changed = valueOf<std::int64_t>(fit, "walls_changed").value_or(0);
     walls.thickened = valueOf<std::int64_t>(fit, "walls_thickened").value_or(0);
     walls.thinnest = valueOf<double>(fit, "walls_thinnest").value_or(0);

@@ -103,8 +103,9 @@ struct LatticeLines::Rasteriser {
 namespace {
 
 struct LineReport {
-    bool closed;  // it ends outside
-    bool buried;  // it crosses the mesh between two inside points
+    bool closed;                   // it ends outside
+    std::int32_t buried, skipped;  // crossings between two inside points, and between two outside
+    bool overlaps;                 // one of its points has a winding number beyond 1
 };
 
 // Sorts a line's crossings and turns them into toggles, in place. A crossing is 2 x + (leaving ? 1 : 0).
@@ -112,17 +113,20 @@ LineReport toToggles(std::int32_t* first, std::int32_t* last, std::int32_t middl
     std::sort(first, last);
     std::int32_t* out = first;
     int winding = 0;
-    bool inside = false, buried = false;
+    bool inside = false, overlaps = false;
+    std::int32_t buried = 0, skipped = 0;
     for (const std::int32_t* in = first; in != last;) {
         const std::int32_t x = *in >> 1;
         for (; in != last && (*in >> 1) == x; ++in) winding += evenOdd || !(*in & 1) ? 1 : -1;
         const bool now = evenOdd ? winding % 2 != 0 : winding != 0;
         if (now != inside) *out++ = x + middle;  // invariant: out < in
-        buried = buried || (now && inside);
+        buried += now && inside;
+        skipped += !now && !inside;
+        overlaps = overlaps || (!evenOdd && std::abs(winding) > 1);
         inside = now;
     }
     std::fill(out, last, std::numeric_limits<std::int32_t>::max());
-    return {!inside, buried};
+    return {!inside, buried, skipped, overlaps};
 }
 
 }  // namespace
@@ -178,14 +182,17 @@ LatticeLines::LatticeLines(const std::vector<openvdb::Vec3d>& points, const std:
     start_.pop_back();
 
     std::atomic<std::size_t> open = 0;
-    std::atomic<bool> buried = false;
+    std::atomic<std::int64_t> buried = 0, skipped = 0;
+    std::atomic<bool> overlap = false;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lines, 1024), [&](const auto& range) {
         progress.check();
         for (std::size_t l = range.begin(); l != range.end(); ++l) {
             const LineReport line = toToggles(toggles_.data() + start_[l], toggles_.data() + start_[l + 1],
                                               raster.middle.x(), evenOdd);
             open += !line.closed;
-            if (line.buried) buried = true;
+            if (line.buried > 0) buried += line.buried;
+            if (line.skipped > 0) skipped += line.skipped;
+            if (line.overlaps) overlap = true;
         }
     });
     if (open > 0) {
@@ -194,7 +201,9 @@ LatticeLines::LatticeLines(const std::vector<openvdb::Vec3d>& points, const std:
                                      "repair it first",
                                      open.load(), lines));
     }
-    hasBuried_ = buried;
+    buried_ = buried;
+    skipped_ = skipped;
+    hasOverlap_ = overlap;
 }
 
 std::pair<const std::int32_t*, const std::int32_t*> LatticeLines::togglesBeyond(
@@ -209,6 +218,15 @@ bool LatticeLines::inside(const openvdb::Coord& point) const {
     if (!box_.isInside(point)) return false;
     const std::size_t line = lineOf(point.y(), point.z());
     return (togglesBeyond(point).first - (toggles_.data() + start_[line])) % 2 != 0;
+}
+
+std::int64_t LatticeLines::insideCount() const {
+    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+    std::int64_t count = 0;
+    for (std::size_t line = 0; line + 1 < start_.size(); ++line)
+        for (std::uint32_t t = start_[line]; t + 1 < start_[line + 1] && toggles_[t] != kNone; t += 2)
+            count += toggles_[t + 1] - toggles_[t];
+    return count;
 }
 
 unsigned LatticeLines::inside8(const openvdb::Coord& low) const {

@@ -37,9 +37,19 @@ class LatticeLines {
     // Bit i: lattice point low + (i, 0, 0) is inside; i = 0..7.
     unsigned inside8(const openvdb::Coord& low) const;
 
+    // Lattice points inside.
+    std::int64_t insideCount() const;
+
     // Whether some line crosses the mesh between two lattice points that are inside: parts overlap or touch
     // there, or a slit is too thin for the lattice.
-    bool hasBuried() const { return hasBuried_; }
+    bool hasBuried() const { return buried_ > 0; }
+    // How many times lines do that.
+    std::int64_t buriedCount() const { return buried_; }
+    // How many times some line crosses the mesh between two lattice points that are outside.
+    std::int64_t skippedCount() const { return skipped_; }
+
+    // Whether some lattice point lies in two parts at once, or in one that winds around it twice; not with evenOdd.
+    bool hasOverlap() const { return hasOverlap_; }
 
     // Lattice points outside this box are outside the mesh.
     const openvdb::CoordBBox& box() const { return box_; }
@@ -54,7 +64,8 @@ class LatticeLines {
                std::size_t(y - box_.min().y());
     }
 
-    bool hasBuried_ = false;
+    bool hasOverlap_ = false;
+    std::int64_t buried_ = 0, skipped_ = 0;
     openvdb::CoordBBox box_;  // empty: nothing is inside
     // Line l: inside on [t0, t1), [t2, t3), ... where t = toggles_[start_[l]], ...; the rest of the line's
     // entries are INT32_MAX.

@@ -100,6 +100,7 @@ struct WallSummary {
     std::int64_t rows = 0;     // conditions on the field: on faces, at lattice points, in the middle of walls
     int sweeps = 0;            // over them
     std::int64_t unmet = 0;    // signs that could not be met
+    std::int64_t between = 0;  // signs that were put right between lattice points
     std::int64_t changed = 0;  // control points
     std::int64_t thickened = 0;  // lattice points outside that a thickened wall or a closed gap took in
     double thinnest = 0;         // 1 % of the walls of at most 4 voxels are thinner; 0: there are none

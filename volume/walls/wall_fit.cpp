@@ -7,6 +7,7 @@
 
 #include "volume/padded_leaf.h"
 #include "volume/row_ascent.h"
+#include "volume/walls/between.h"
 #include "volume/walls/feet.h"
 #include "volume/walls/one_per_cell.h"
 #include "volume/walls/thin_places.h"
@@ -32,7 +33,15 @@ constexpr float kSoftness = 0.03F;
 // The same for walls below kThin voxels: with 0.03 a wall of 0.35 in a tube is 5 % thicker.
 constexpr float kThinSoftness = 0.003F;
 constexpr double kThin = 0.6;
-constexpr double kLeastValue = 1e-3;     // |F| that a sign row asks for, or |v|/2
+constexpr double kLeastValue = 1e-3;  // |F| that a sign row asks for, or |v|/2
+// Between lattice points: how far from the mesh a wrong sign counts (0.1: bars of 0.6 come out 15 instead of 6 % thicker),
+// how often these are looked for, |F| that their rows ask for, or |v|/8, and their rho (0, hard: a row of walls and gaps
+// below what a spline can hold would push the others about).
+constexpr double kBetween = 0.06;
+constexpr double kFeather = 0.3;
+constexpr int kMendingRounds = 6;
+constexpr double kBetweenDepth = 0.02;
+constexpr float kBetweenSoftness = 0.001F;
 constexpr double kTolerance = 0.005;     // of F
 constexpr double kHardTolerance = 1e-5;  // of F, hard rows alone
 
@@ -71,6 +80,7 @@ class WallFit {
         addGaps(places);
         progress_("walls", 0.5);
         ascendAll(faces);
+        mendBetween(places);
         takeIn();
         progress_("walls", 1);
         return report_;
@@ -204,6 +214,68 @@ class WallFit {
         report_.sweeps = all.rounds + hard.rounds;
         report_.unmet = hard.unmet;
         report_.changed = std::max(all.changed, hard.changed);
+    }
+
+    // Whether the thickened walls and the closed gaps have a place outside the mesh inside.
+    // The faces of a thin gap, or of a wall that ends in an edge, cannot all be where they should: the thinner, the more
+    // is left.
+    bool isTolerable(const WrongPlace& p) const {
+        const Vec3d beyond = p.inside ? Vec3d(-p.outwards) : p.outwards;
+        const double t = wallBehind(p.foot, beyond, 1.0, triangles_).thickness;
+        const double widest = p.inside ? 1.0 : kFeather, more = p.inside ? 0.2 : 0.1;
+        return t > 0 && t < widest && p.distance < kBetween + more * (1 - t);
+    }
+    bool isMeantInside(const WrongPlace& p) const {
+        return !p.inside &&
+               (p.distance <= outBy(thinBehind(p.foot, p.outwards)) || isClosed(p.foot, p.outwards));
+    }
+
+    // Signs that are still wrong between lattice points, where walls meet and at the mouths of slots: a row each, round by
+    // round near those of the last one.
+    void mendBetween(const ThinPlaces& places) {
+        if (!options_.between) return;
+        openvdb::MaskTree near = nearer(*places.near, kSignReach);
+        std::vector<WrongPlace> wrong = wrongIn(near);
+        for (int round = 0; round < kMendingRounds && !wrong.empty(); ++round) {
+            const openvdb::MaskTree around = leavesAround(wrong);
+            for (const WrongPlace& p : wrong) {
+                rows_.push_back(row(p.at, p.inside ? 1 : -1, std::min(kBetweenDepth, p.distance / 8)));
+                rows_.back().rho = kBetweenSoftness;
+            }
+            report_.between += std::int64_t(wrong.size());
+            const AscentReport mended =
+                ascend(field_, rowsIn(around),
+                       {.tolerance = kHardTolerance * scale_, .rounds = options_.rounds}, progress_);
+            report_.changed = std::max(report_.changed, mended.changed);
+            near.topologyIntersection(around);
+            wrong = wrongIn(near);
+        }
+    }
+
+    std::vector<WrongPlace> wrongIn(const openvdb::MaskTree& near) const {
+        std::vector<WrongPlace> wrong =
+            wrongPlaces(field_, shift_, near, *options_.between, triangles_, kBetween, progress_);
+        std::erase_if(wrong, [this](const WrongPlace& p) { return isMeantInside(p) || isTolerable(p); });
+        return wrong;
+    }
+
+    // The leaves that hold these places, and those beside them.
+    static openvdb::MaskTree leavesAround(const std::vector<WrongPlace>& places) {
+        openvdb::MaskTree around;
+        for (const WrongPlace& p : places) {
+            const Coord origin = Coord::floor(p.at) & ~7;
+            around.fill({origin.offsetBy(-8), origin.offsetBy(15)}, true);
+        }
+        around.voxelizeActiveTiles();
+        return around;
+    }
+
+    std::vector<FieldRow> rowsIn(const openvdb::MaskTree& mask) const {
+        std::vector<FieldRow> rows;
+        const openvdb::tree::ValueAccessor<const openvdb::MaskTree> accessor(mask);
+        for (const FieldRow& row : rows_)
+            if (accessor.isValueOn(Coord::floor(row.at) - shift_)) rows.push_back(row);
+        return rows;
     }
 
     BSplineField& field_;

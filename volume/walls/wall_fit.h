@@ -7,6 +7,7 @@
 #include "isowave/mesh.h"
 #include "isowave/progress.h"
 #include "volume/field.h"
+#include "volume/walls/between.h"
 
 namespace isowave {
 
@@ -16,14 +17,16 @@ struct WallFitOptions {
     // for these are thickened until they are `sigma` sampling steps thick.
     int refine = 4;
     double sigma = 1.05;
-    double widest = 4;  // walls and gaps up to this thickness, voxels; at most 4
-    int rounds = 60;    // of the ascent, at most; and as many for its last part
+    double widest = 4;                   // walls and gaps up to this thickness, voxels; at most 4
+    const FineSigns* between = nullptr;  // signs to ask for between lattice points, too; none: only at these
+    int rounds = 60;                     // of the ascent, at most; and as many for its last part
 };
 
 struct WallFitReport {
     std::int64_t rows = 0;       // conditions on F: on faces, at lattice points, in the middle of walls
     int sweeps = 0;              // over them
     std::int64_t unmet = 0;      // signs that could not be met
+    std::int64_t between = 0;    // rows for places between lattice points whose sign was wrong
     std::int64_t changed = 0;    // control points
     std::int64_t thickened = 0;  // lattice points outside that a thickened wall or a closed gap took in
     // Voxels: the thickness that 1 % of the lattice points beside walls of at most `widest` are below, of walls whose
@@ -37,7 +40,9 @@ struct WallFitReport {
 // `widest` voxels,
 //   F = 0, softly, at the feet of lattice points nearer than 0.75 voxel, one a cell of half a voxel;
 //   F has the shape's sign at lattice points nearer than 1.8 voxels;
-//   F < 0 in the middle of walls below a voxel, F > 0 in the middle of gaps below one.
+//   F < 0 in the middle of walls below a voxel, F > 0 in the middle of gaps below one;
+//   F has the shape's sign between lattice points, at those of `between` that are farther than 0.1 voxel from the mesh and
+//   came out wrong (where walls meet, at the mouths of slots, at the edges of bars): looked for up to six times.
 // Walls that are too thin for the samples of a mesh at `refine` are thickened until they are not; gaps that are too
 // thin for them are closed, so that they end along a line and not in a row of tunnels.
 // Quasi-interpolation makes plates of 1 to 2 voxels 3 to 9 % thicker, 17 % at worst: F has a kink in their middle, where it
