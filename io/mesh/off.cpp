@@ -26,6 +26,7 @@ class OffReader {
         else if (const auto word = lines_.word(); !word.empty())
             lines_.fail(fmt::format("'{}' behind the last face", shown(word)));
         soup_.tags = lines_.takeTags();
+        soup_.digits = lines_.mostDigits();
         return std::move(soup_);
     }
 
@@ -42,6 +43,9 @@ class OffReader {
         for (const std::string_view prefix : {"ST", "C", "N", "4"}) {
             if (word == "OFF" || !word.starts_with(prefix)) continue;
             word.remove_prefix(prefix.size());
+            if (prefix == "ST") soup_.drop(Dropped::textureCoordinates);
+            if (prefix == "C") soup_.drop(Dropped::colours);
+            if (prefix == "N") soup_.drop(Dropped::normals);
             isHomogeneous_ = prefix == "4";
         }
         if (word != "OFF") lines_.fail("an OFF file starts with 'OFF'");
@@ -97,6 +101,7 @@ class OffReader {
                 fmt::format("a face starts with its number of corners, at least 3; found '{}'", shown(word)));
         for (std::int64_t c = 0; c < *corners; ++c) takeCorner(c, *corners);
         soup_.endFace();
+        if (byLine_ && !lines_.isLineDone()) soup_.drop(Dropped::colours);
     }
     void takeCorner(std::int64_t c, std::int64_t corners) {
         const std::string_view word = lines_.word();
