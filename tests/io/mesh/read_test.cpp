@@ -379,6 +379,21 @@ TEST(ReadMesh, TakesLineBreaksOfOffForBlanks) {
     expectTetrahedron(
         readBytes("a.off", replaced(replaced(kTetrahedronOff, "OFF", "4OFF"), "0 0 0\n1 0 0\n0 1 0\n0 0 1",
                                     "0 0 0 1\n2 0 0 2\n0 3 0 3\n0 0 1 1")));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "OFF\n4 4 0", "OFF4 4 0")));
+    // Normals, colours, texture coordinates behind the points, and faces over several lines.
+    const std::string broken = replaced(kTetrahedronOff, "3 0 2 1", "3\n0\n2 1");
+    for (const auto& [keyword, more] : {std::pair{"NOFF", " 0 0 1"},
+                                        {"COFF", " 1 0 0 1"},
+                                        {"CNOFF", " 0 0 1 1 0 0 1"},
+                                        {"STOFF", " 0.5 0.5"}}) {
+        std::string points;
+        for (const char* point : {"0 0 0", "1 0 0", "0 1 0", "0 0 1"})
+            points += std::string(point) + more + "\n";
+        const std::string text =
+            replaced(replaced(broken, "OFF", keyword), "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", points);
+        expectTetrahedron(readBytes("a.off", text));
+        expectTetrahedron(readBytes("a.off", replaced(text, "3\n0\n2 1", "3 0 2 1")));
+    }
     // A coordinate is gone, a line is there twice: as many words as there should be, but not by accident.
     EXPECT_REFUSED("a.off",
                    replaced(replaced(kTetrahedronOff, "1 0 0\n0 1 0", " 1 0"), "3 0 2 1", "3 0 2 1\n3 0 2 1"),
