@@ -1,10 +1,16 @@
 #include "lod/budgets.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "isowave/error.h"
 
 namespace isowave::lod {
+namespace {
+
+constexpr double kFewestTriangles = 4;  // of a closed mesh
+
+}  // namespace
 
 void checkBudgets(const BudgetOptions& options, bool openBorder) {
     if (!options.any()) return;
@@ -13,7 +19,8 @@ void checkBudgets(const BudgetOptions& options, bool openBorder) {
     requireSimplifier("a budget (--triangles, --ratio, --tolerance, --max-genus, --min-component)");
 }
 
-Budgets::Budgets(const BudgetOptions& options) : limits_{options.maxGenus, options.minComponent} {
+Budgets::Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles)
+    : limits_{options.maxGenus, options.minComponent}, wholeTriangles_(inputTriangles) {
     for (const std::int64_t n : options.triangles)
         asked_.push_back({{Budget::Kind::triangles, static_cast<double>(n)}, 0});
     for (const double ratio : options.ratios) asked_.push_back({{Budget::Kind::triangles, 0}, ratio});
@@ -24,7 +31,7 @@ Budgets::Budgets(const BudgetOptions& options) : limits_{options.maxGenus, optio
 
 void Budgets::add(int step, const BSplineField& field, const TriangleMesh& mesh,
                   const MeshTopology& topology) {
-    if (steps_.empty()) finestTriangles_ = topology.triangles;
+    if (!wholeTriangles_) wholeTriangles_ = topology.triangles;
     steps_.push_back({step, mesh, topology, field.transform().voxelSize().length()});
 }
 
@@ -43,7 +50,9 @@ BudgetLevel Budgets::made(const Asked& asked, BudgetSolver& solver, const Ladder
                           const Progress& progress, StageClock& clock) const {
     const double begin = clock.secondsSoFar();
     Budget budget = asked.budget;
-    if (asked.ratio > 0) budget.value = std::round(asked.ratio * static_cast<double>(finestTriangles_));
+    if (asked.ratio > 0)
+        budget.value = std::max(kFewestTriangles,
+                                std::round(asked.ratio * static_cast<double>(wholeTriangles_.value_or(0))));
     BudgetMesh chosen = [&] {
         const StageClock::Scope scope(clock, "collapse");
         return solver.choose(budget, progress);

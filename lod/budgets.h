@@ -1,6 +1,7 @@
 // Collects the meshes of all steps, then makes one mesh a budget.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ void checkBudgets(const BudgetOptions& options, bool openBorder);
 
 class Budgets {
   public:
-    explicit Budgets(const BudgetOptions& options);
+    // inputTriangles: what a ratio is a share of; nothing: the triangles of level 0.
+    Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles);
 
     bool wanted() const { return !asked_.empty(); }
     // REQUIRES: steps in ascending order, step 0 first; the mesh is not empty.
@@ -28,7 +30,7 @@ class Budgets {
   private:
     struct Asked {
         Budget budget;
-        double ratio = 0;  // of level 0's triangles, where not 0
+        double ratio = 0;  // of the triangles that ratios are shares of, where not 0
     };
     BudgetLevel made(const Asked& asked, BudgetSolver& solver, const LadderVisitor& visitor,
                      const Progress& progress, StageClock& clock) const;
@@ -37,7 +39,7 @@ class Budgets {
     std::vector<Asked> asked_;
     TopologyLimits limits_;
     std::vector<StepMesh> steps_;
-    std::int64_t finestTriangles_ = 0;
+    std::optional<std::int64_t> wholeTriangles_;
 };
 
 }  // namespace isowave::lod

@@ -49,6 +49,12 @@ InputTruth truthOf(const Solid& solid) {
     return InputTruth::of(input.madeFrom ? *input.madeFrom : input);
 }
 
+// Of a mesh as read, and of the one that a pyramid was made of.
+std::optional<std::int64_t> trianglesOf(const Solid& solid) {
+    const InputReport& input = solid.input();
+    return input.madeFrom ? input.madeFrom->triangles : input.triangles;
+}
+
 // Makes and measures one mesh a step, level 0 first: the others are measured against it.
 class Maker {
   public:
@@ -215,7 +221,7 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     StageClock clock(state.stages, state.seconds);
     const std::optional<lod::Border> border = state.openBorder;
     lod::checkBudgets(budgetOptions, border.has_value());
-    lod::Budgets budgets(budgetOptions);
+    lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid));
     const lod::StepChoice choice(options, budgets.wanted());
     lod::Maker maker(choice, budgets, options, border, lod::truthOf(solid), visitor, progress, clock);
     Ladder ladder;

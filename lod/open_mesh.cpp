@@ -9,6 +9,7 @@
 #include "base/triangle.h"
 #include "hold/solid_limits.h"
 #include "io/mesh/read.h"
+#include "io/mesh/units.h"
 #include "isowave/error.h"
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
@@ -31,14 +32,37 @@ constexpr int kFinestRefine = 4;  // of polygonize()
 
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
-double voxelSizeFor(const TriangleMesh& mesh, const SolidOptions& options, const std::string& name,
-                    const Progress& progress) {
+// The least thickness of a plate, in voxels: below it is torn by the lattice.
+constexpr double kLeastThickness = 2;
+
+void checkOptions(const SolidOptions& options) {
     if (options.voxel && options.voxels)
         throw UsageError("--voxel and --voxels exclude each other; give one of them");
-    if (options.voxel) return *options.voxel;
-    if (!options.voxels)
-        progress.say(fmt::format("{}: --voxels {} along the longest axis", name, kDefaultVoxels));
-    return voxelForCount(mesh, static_cast<double>(options.voxels.value_or(kDefaultVoxels)));
+    if (options.closeHoles && options.thicken)
+        throw UsageError(
+            "--close-holes and --thicken exclude each other: what is closed is a solid already; give one");
+    if (options.thicken && options.fit.value_or(FitMethod::distance) != FitMethod::distance)
+        throw UsageError("--thicken needs the distance fit; leave out --fit");
+    if (options.unit && metresPer(*options.unit) == 0)
+        throw UsageError("--unit: '" + *options.unit + "' is not one of mm, cm, m, in, ft");
+}
+
+double voxelSizeFor(const TriangleMesh& mesh, const SolidOptions& options, const std::string& name,
+                    const Progress& progress) {
+    const double voxels = static_cast<double>(options.voxels.value_or(kDefaultVoxels));
+    const double voxel = options.voxel ? *options.voxel : voxelForCount(mesh, voxels);
+    const bool isChosen = options.voxel || options.voxels;
+    const double largest = options.thicken ? *options.thicken / kLeastThickness : HUGE_VAL;
+    if (isChosen && voxel > largest)
+        throw UsageError(fmt::format(
+            "--thicken {:g} is {:.2g} voxels of {:.4g}, fewer than {:g}; give --voxel {:.3g} or less",
+            *options.thicken, *options.thicken / voxel, voxel, kLeastThickness, 0.999 * largest));
+    if (!isChosen && voxel > largest / 1.5) {
+        progress.say(fmt::format("{}: --voxel {:.4g}, a third of the thickness", name, largest / 1.5));
+        return largest / 1.5;
+    }
+    if (!isChosen) progress.say(fmt::format("{}: --voxels {} along the longest axis", name, kDefaultVoxels));
+    return voxel;
 }
 
 std::array<double, 3> extentOf(const TriangleMesh& mesh) {
@@ -58,9 +82,20 @@ struct ClosedMesh {
     MeshRepairReport repair;
 };
 
-ClosedMesh closed(LoadedMesh loaded, const std::string& name, const Progress& progress) {
+// With --thicken it may stay open.
+ClosedMesh closed(LoadedMesh loaded, const std::string& name, const SolidOptions& options,
+                  const Progress& progress) {
     ClosedMesh result{std::move(loaded), {}};
-    result.loaded.mesh = repairMesh(std::move(result.loaded.mesh), name, &result.repair, {}, progress);
+    RepairOptions repair;
+    repair.closeHoles = options.closeHoles;
+    repair.step = result.loaded.step;
+    repair.mayStayOpen = options.thicken.has_value();
+    result.loaded.mesh = repairMesh(std::move(result.loaded.mesh), name, &result.repair, repair, progress);
+    std::vector<std::string>& notes = result.repair.notes;
+    if (!result.loaded.droppedNote.empty()) notes.insert(notes.begin(), result.loaded.droppedNote);
+    if (options.thicken)
+        notes.push_back(fmt::format("thickened: the solid is all within {:g} of the {} triangles",
+                                    *options.thicken / 2, result.loaded.mesh.triangles.size()));
     return result;
 }
 
@@ -110,6 +145,7 @@ InputReport reportOf(const ClosedMesh& input, const std::string& name, double vo
     report.triangles = input.repair.facesRead;
     report.repairNotes = input.repair.notes;
     report.space = input.loaded.space;
+    report.unit = input.loaded.unit;
     return report;
 }
 
@@ -147,8 +183,8 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 
     const Fitting fitting = fittingOf(options, FitMethod::distance);
     const double voxel = voxelSizeFor(mesh, options, name, progress), limit = memoryLimit(options.maxMemory);
-    refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, fitting.distance.halfWidth),
-                   limit, kRemedy);
+    const double reach = fitting.distance.halfWidth + options.thicken.value_or(0) / 2 / voxel;
+    refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, reach), limit, kRemedy);
     const auto transform = transformForMesh(mesh, voxel);
     Solid::State solid;
     solid.input = reportOf(input, name, voxel);
@@ -159,14 +195,22 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
                              dimensions[0], dimensions[1], dimensions[2], voxel, nameOf(fitting.method)));
 
     const auto distance = [&] {
+        if (options.thicken)
+            return distanceAroundMesh(mesh, *transform, fitting.distance.halfWidth, *options.thicken,
+                                      progress);
         return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
     };
     Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
-    const std::vector<openvdb::Vec3d> points = inIndexSpace(mesh, *transform);
-    const FineSigns signs(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
-                          progress);
+    std::vector<openvdb::Vec3d> points;
+    std::optional<FineSigns> signs;  // a sheet has none
+    if (!options.thicken) {
+        points = inIndexSpace(mesh, *transform);
+        signs.emplace(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
+                      progress);
+        putTruth(solid.input, input, voxel, points, *signs);
+    }
     const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
-        if (options.walls)
+        if (options.walls && signs)
             samples.walls = [&, between](BSplineField& field, const openvdb::FloatGrid& grid,
                                          const openvdb::Coord& shift) {
                 const double halfWidth = fitting.distance.halfWidth;
@@ -177,8 +221,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
             };
         fit(made, fitting, samples, limit, kRemedy, progress, clock);
     };
-    putTruth(solid.input, input, voxel, points, signs);
-    fitAll(solid, &signs);
+    fitAll(solid, signs ? &*signs : nullptr);
     if (missesBetween(solid, progress)) {
         Solid::State plain = solid;
         fitAll(plain, nullptr);
@@ -191,13 +234,24 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 
 }  // namespace
 
-LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress) {
-    MeshFileInfo info;
+LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
+                    const std::optional<std::string>& unit) {
+    MeshFile file = readMeshFile(path, progress);
     LoadedMesh loaded;
-    loaded.mesh = readMesh(path, &info, progress);
-    loaded.format = info.format;
-    if (info.space == "LPS") loaded.space = Space::lps;
-    if (info.space == "RAS") {
+    loaded.mesh = std::move(file.mesh);
+    loaded.format = file.info.format;
+    loaded.step = file.step;
+    loaded.droppedNote = file.droppedNote;
+    loaded.unit = unit.value_or("");
+    if (loaded.format == "GLB") {  // it comes in mm
+        loaded.unit = unit.value_or("mm");
+        const double scale = 0.001 / metresPer(loaded.unit);
+        for (Point& p : loaded.mesh.points)
+            for (double& x : p) x *= scale;
+        *loaded.step *= scale;
+    }
+    if (file.info.space == "LPS") loaded.space = Space::lps;
+    if (file.info.space == "RAS") {
         // Inside the program everything is LPS. Half a turn about z: orientation stays.
         loaded.space = Space::ras;
         for (Point& p : loaded.mesh.points) p[0] = -p[0], p[1] = -p[1];
@@ -208,19 +262,23 @@ LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress)
 
 Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,
                       const Progress& progress, StageClock& clock) {
+    checkOptions(options);
     const std::string name = path.string();
     const ClosedMesh input = [&] {
         const StageClock::Scope scope(clock, "read");
-        return closed(loadMesh(path, progress), name, progress);
+        return closed(loadMesh(path, progress, options.unit), name, options, progress);
     }();
     return fitted(input, name, options, progress, clock);
 }
 
 Solid::State openMesh(const TriangleMesh& mesh, Space space, const SolidOptions& options,
                       const Progress& progress, StageClock& clock) {
+    checkOptions(options);
     const ClosedMesh input = [&] {
         const StageClock::Scope scope(clock, "read");
-        return closed({mesh, space, "triangles in memory"}, "mesh", progress);
+        LoadedMesh loaded{mesh, space, "triangles in memory"};
+        loaded.unit = options.unit.value_or("");
+        return closed(std::move(loaded), "mesh", options, progress);
     }();
     return fitted(input, "mesh", options, progress, clock);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "base/stage_clock.h"
@@ -9,13 +10,17 @@
 
 namespace isowave::lod {
 
-// A mesh file as it is, in LPS when it says SPACE=RAS. format: as MeshFileInfo has it.
+// A mesh file as it is, in LPS when it says SPACE=RAS. format: as MeshFileInfo has it. step, droppedNote: as MeshFile has them
+// (io/mesh/read.h). unit: of the coordinates where it is known, which is that of GLB alone; in the one that is asked for, or mm.
 struct LoadedMesh {
     TriangleMesh mesh;
     Space space = Space::unspecified;
     std::string format;
+    std::optional<double> step = {};
+    std::string droppedNote = {}, unit = {};
 };
-LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress);
+LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
+                    const std::optional<std::string>& unit = {});
 
 Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,
                       const Progress& progress, StageClock& clock);

@@ -60,7 +60,7 @@ Fields fieldsOfPyramid(const InputReport& input) {
     if (source.empty()) return std::move(list).fields();
     const Json object = objectOf(source);
     for (const char* key :
-         {"dimensions", "spacing", "iso", "volume", "parts", "handles", "cavities", "space"})
+         {"dimensions", "spacing", "iso", "volume", "parts", "handles", "cavities", "space", "unit"})
         if (object.contains(key)) list.put(key, object[key]);
     list.put("source", object);
     return std::move(list).fields();
@@ -79,6 +79,7 @@ Fields fieldsOfMesh(const InputReport& input) {
     list.putIf("handles", input.handles);
     list.putIf("cavities", input.cavities);
     list.put("repair", input.repairNotes);
+    list.putIf("unit", input.unit);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
     return std::move(list).fields();
 }
@@ -221,6 +222,7 @@ std::shared_ptr<const InputReport> inputOfSource(const Source& source) {
     input->cavities = valueOf<std::int64_t>(json, "cavities");
     input->repairNotes =
         valueOf<std::vector<std::string>>(json, "repair").value_or(std::vector<std::string>());
+    input->unit = valueOf<std::string>(json, "unit").value_or("");
     input->space = choiceOf<Space>(json, "space", kSpaces);
     return input;
 }

@@ -115,6 +115,30 @@ void fillLeaf(Leaf& leaf, const TriangleHierarchy& triangles, const LatticeLines
     }
 }
 
+// A leaf of distances to the triangles less `radius`.
+void fillAround(Leaf& leaf, const TriangleHierarchy& triangles, double halfWidth, double radius) {
+    constexpr double least = 1.0 / (1 << 20);
+    const double reach = halfWidth + radius;
+    std::array<std::int64_t, 512> nearest;
+    float* values = leaf.buffer().data();
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+        const openvdb::Vec3d point = leaf.offsetToGlobalCoord(n).asVec3d();
+        const openvdb::Index before = n & 7 ? n - 1 : n & 63 ? n - 8 : n - 64;
+        TriangleHierarchy::Nearest best{reach * reach, -1};
+        if (n > 0 && nearest[before] >= 0) {
+            const auto guess = triangles.distanceTo(nearest[before], point);
+            if (guess.squared < best.squared) best = guess;
+        }
+        best = triangles.nearest(point, best);
+        nearest[n] = best.triangle;
+        double value = std::sqrt(best.squared) - radius;
+        if (std::abs(value) < least) value = value < 0 ? -least : least;
+        const auto clamped = static_cast<float>(std::clamp(value, -halfWidth, halfWidth));
+        values[n] = clamped;
+        leaf.setActiveState(n, std::abs(clamped) < static_cast<float>(halfWidth));
+    }
+}
+
 // Makes and fills the leaves of the band, and returns them.
 std::vector<Leaf*> fillBand(openvdb::FloatTree& tree, const std::vector<openvdb::Vec3d>& points,
                             const std::vector<Triangle>& meshTriangles, const LatticeLines& lines,
@@ -222,6 +246,41 @@ openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb
     if (hasBuried(lines, points, mesh.triangles, evenOdd, progress)) {
         liftFromBuried(grid->tree(), leaves, halfWidth, progress);
     }
+    openvdb::tools::prune(grid->tree());
+    grid->setTransform(transform.copy());
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setName("distance");
+    return grid;
+}
+
+openvdb::FloatGrid::Ptr distanceAroundMesh(const TriangleMesh& mesh,
+                                           const openvdb::math::Transform& transform, double halfWidth,
+                                           double thickness, const Progress& progress) {
+    assert(halfWidth >= 1.0 && thickness > 0 && !mesh.triangles.empty());
+    const double radius = thickness / 2 / transform.voxelSize().x();
+    progress("measuring distances", 0.0);
+    std::vector<openvdb::Vec3d> points;
+    points.reserve(mesh.points.size());
+    openvdb::BBoxd bounds;
+    for (const Point& p : mesh.points) {
+        points.push_back(transform.worldToIndex(openvdb::Vec3d(p.data())));
+        bounds.expand(points.back());
+    }
+    const TriangleHierarchy triangles(points, mesh.triangles);
+    const openvdb::CoordBBox box(openvdb::Coord::floor(bounds.min()), openvdb::Coord::ceil(bounds.max()));
+    auto grid = openvdb::FloatGrid::create(static_cast<float>(halfWidth));
+    // Every point inside is nearer than the radius, so that it lies in one of these leaves.
+    const Blocks blocks = leavesNear(triangles, box, halfWidth + radius, progress);
+    std::vector<Leaf*> leaves;
+    leaves.reserve(blocks.origins.size());
+    for (const openvdb::Coord& origin : blocks.origins) leaves.push_back(grid->tree().touchLeaf(origin));
+    std::atomic<std::size_t> done = 0;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            fillAround(*leaves[i], triangles, halfWidth, radius);
+        const std::size_t now = done += range.size();
+        progress("measuring distances", double(now) / double(leaves.size()));
+    });
     openvdb::tools::prune(grid->tree());
     grid->setTransform(transform.copy());
     grid->setGridClass(openvdb::GRID_LEVEL_SET);

@@ -25,6 +25,13 @@ openvdb::FloatGrid::Ptr distanceFromMesh(const TriangleMesh& mesh, const openvdb
                                          double halfWidth, bool evenOdd = false,
                                          const Progress& progress = {});
 
+// Signed distances from the solid of all points nearer to `mesh` than half of `thickness`: the distance to the mesh less
+// thickness / 2. mesh: open or closed, its orientation means nothing; thickness: in the mesh's units, above 0. A sheet becomes
+// a plate, a closed mesh a shell. Otherwise as above.
+openvdb::FloatGrid::Ptr distanceAroundMesh(const TriangleMesh& mesh,
+                                           const openvdb::math::Transform& transform, double halfWidth,
+                                           double thickness, const Progress& progress = {});
+
 // Voxel size, in the mesh's units, for which the mesh's longest axis spans `voxels` voxels.
 // REQUIRES: voxels > 0, a mesh of non-zero extent (repairMesh).
 double voxelForCount(const TriangleMesh& mesh, double voxels);

@@ -71,7 +71,8 @@ struct LevelOptions {
 // Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
 struct BudgetOptions {
     std::vector<std::int64_t> triangles = {};  // one mesh each: at most so many triangles
-    std::vector<double> ratios = {};           // one mesh each: at most this share of level 0's triangles
+    std::vector<double> ratios =
+        {};  // one mesh each: at most this share of a mesh's own triangles, of level 0's for others
     // One mesh each: nowhere farther than this from level 0, world units.
     std::vector<double> tolerances = {};
     // Of all of them; where only these are given there is one mesh, that of the finest step that they allow.

@@ -59,7 +59,7 @@ struct Polyline {
 
 // What a mesh file says besides its polygons.
 struct MeshFileInfo {
-    std::string format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF"
+    std::string format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF", "GLB"
     std::string space;   // the word after SPACE= in a comment, as 3D Slicer writes it: LPS, RAS; or empty
     std::int64_t polygons = 0;  // as listed, before they are cut into triangles
 };
@@ -67,15 +67,15 @@ struct MeshFileInfo {
 // Steps of the coordinates' number format that a mesh must be across to be read.
 inline constexpr int kFewestSteps = 1024;
 
-// STL (binary, text), OBJ, PLY (binary of either byte order, text), OFF (text). Polygons are triangulated as fans.
-// Throws InputError: missing, empty, truncated, malformed (with line or element), no triangles, a coordinate
+// STL (binary, text), OBJ, PLY (binary of either byte order, text), OFF (text), GLB (in mm, z up). Concave polygons too
+// become triangles without overlaps. Throws InputError: missing, truncated, malformed (with line), no triangles, a coordinate
 // that is not finite (which point), coordinates beyond 1e15 or so far from the origin that fewer than
 // kFewestSteps representable steps are left across the part. No repair beyond that: points as listed (STL corners merged
 // by exact position). info: optional second result.
 ISOWAVE_EXPORT TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info = nullptr,
                                      const Progress& progress = {});
 
-// Whether a path has a mesh file's extension: .stl .obj .ply .off, in any case.
+// Whether a path has a mesh file's extension: .stl .obj .ply .off .glb, in any case.
 ISOWAVE_EXPORT bool isMeshPath(const std::filesystem::path& path);
 
 // ---- writing ----

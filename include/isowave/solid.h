@@ -46,6 +46,14 @@ struct SolidOptions {
     std::optional<std::int64_t> voxels = {};  // along the longest axis of the bounding box
     std::optional<double> voxel = {};         // edge, world units
 
+    // ---- what is done with an open mesh: one of the two; neither: small holes are filled, large ones refused
+    std::optional<double> closeHoles = {};  // holes up to this width are filled, world units
+    // The solid of all points nearer to the mesh than half of this, world units: a sheet becomes a plate. At least 2 voxels.
+    std::optional<double> thicken = {};
+    // What a unit of a mesh's coordinates is: mm, cm, m, in, ft. Coordinates stay as they are: formats that have a unit (GLB)
+    // and the report say it.
+    std::optional<std::string> unit = {};
+
     // ---- how a file is read
     ImageReadOptions image = {};           // its memoryLimit is set from maxMemory
     std::optional<std::string> grid = {};  // of a .vdb with several level sets
@@ -82,7 +90,8 @@ struct InputReport {
     std::optional<std::array<std::array<double, 3>, 3>>
         direction;                          // unit vectors along the lattice's axes, LPS
     std::optional<std::int64_t> triangles;  // of a mesh, as read
-    std::vector<std::string> repairNotes;   // what was mended in it, a line each
+    std::vector<std::string> repairNotes;   // what was mended in it, and what of it is not kept, a line each
+    std::string unit;                       // of its coordinates, where it was given
     // World units^3. Masks and labels: voxels inside times the volume of one, unless the border is open. Meshes: their
     // own, unless parts of them overlap or the orientation cannot be trusted. Others do not say.
     std::optional<double> volume;

@@ -1,8 +1,10 @@
 #include "io/mesh/glb.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/point_box.h"
 #include "io/mesh/float32.h"
 #include "isowave/error.h"
 
@@ -49,13 +51,28 @@ Accessors accessorsOf(const MeshView& mesh, const std::vector<FloatPoint>& point
     return all;
 }
 
+// What is taken off all points and put into the node: nothing, or the middle of the mesh's box where the mesh is farther from
+// the origin than it is large, so that float32 has its digits for the shape and not for the place.
+Point originOf(std::span<const Point> points) {
+    PointBox box;
+    for (const Point& p : points) box.add(p);
+    double largest = 0, extent = 0;
+    for (int a = 0; a < 3; ++a) {
+        largest = std::max({largest, std::abs(box.low[a]), std::abs(box.high[a])});
+        extent = std::max(extent, box.extent(a));
+    }
+    return largest > 2 * extent ? box.centre() : Point{};
+}
+
 // The JSON chunk, which describes one buffer.
-json describe(const MeshView& mesh, const std::vector<FloatPoint>& points, const std::string& title) {
+json describe(const MeshView& mesh, const std::vector<FloatPoint>& points, const Point& origin,
+              const std::string& title) {
     json gltf{{"asset", {{"version", "2.0"}, {"generator", "isowave"}}}, {"scene", 0}};
     if (mesh.space != Space::unspecified)
         gltf["asset"]["extras"]["SPACE"] = mesh.space == Space::lps ? "LPS" : "RAS";
     gltf["scenes"] = json::array({json{{"nodes", json::array({0})}}});
     json node{{"name", title}};
+    if (origin != Point{}) node["translation"] = origin;
     if (!mesh.triangles.empty()) {  // glTF has no empty accessors: an empty mesh is a node without one
         json primitive;
         const Accessors all = accessorsOf(mesh, points, primitive);
@@ -72,9 +89,13 @@ json describe(const MeshView& mesh, const std::vector<FloatPoint>& points, const
 }  // namespace
 
 void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title) {
-    const std::vector<FloatPoint> points = separateFloats(mesh.points, name, "GLB");
+    const Point origin = mesh.points.empty() ? Point{} : originOf(mesh.points);
+    std::vector<Point> centred(mesh.points.begin(), mesh.points.end());
+    for (Point& p : centred)
+        for (std::size_t a = 0; a < 3; ++a) p[a] -= origin[a];
+    const std::vector<FloatPoint> points = separateFloats(centred, name, "GLB");
     std::string text =
-        describe(mesh, points, title).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        describe(mesh, points, origin, title).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const bool empty = mesh.triangles.empty();
     const std::uint64_t binary = empty ? 0

@@ -8,7 +8,8 @@
 
 namespace isowave {
 
-// float32, points kept apart as separateFloats() does; `title` names node and mesh. Throws OperationError where float32 or
+// float32, points kept apart as separateFloats() does. Where the mesh is farther from the origin than twice its extent, points
+// are relative to the middle of its box, and the node's translation, in double, puts them back; `title` names node and mesh. Throws OperationError where float32 or
 // 4 GiB are not enough. REQUIRES: triangles, in metres, Y up.
 void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title);
 

@@ -22,6 +22,16 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+// Of a number in decimals, without zeros before the first other digit.
+int digitsOf(std::string_view word) {
+    int digits = 0;
+    for (const char c : word) {
+        if (c == 'e' || c == 'E') break;
+        digits += c >= '0' && c <= '9' && (digits > 0 || c != '0');
+    }
+    return digits;
+}
+
 }  // namespace
 
 double outOfRange(std::string_view word) {
@@ -148,6 +158,7 @@ Point Lines::point() {
         if (!value) fail(fmt::format("'{}' is not a number", shown(found)));
         if (!std::isfinite(*value)) fail(fmt::format("coordinate {} is not finite", shown(found)));
         p[i] = *value;
+        mostDigits_ = std::max(mostDigits_, digitsOf(found));
     }
     return p;
 }

@@ -65,6 +65,8 @@ class Lines {
     // Three coordinates, of the next three words. Throws InputError for anything else.
     Point point();
 
+    // The most significant digits of a coordinate so far: 4 of "-0.01250e3".
+    int mostDigits() const { return mostDigits_; }
     bool isLineDone() const;                          // whether no word is left on this line
     std::size_t number() const { return number_; }    // of this line, counted from 1
     bool isFirstWord() const { return isFirst_; }     // whether the last word() was the first of its line
@@ -89,6 +91,7 @@ class Lines {
     bool goesOn_ = false;  // the statement, on the next line
     bool isFirst_ = false, hasWord_ = false;
     std::size_t number_ = 0;
+    int mostDigits_ = 0;
     std::vector<MeshTag> tags_;
 };
 

@@ -15,8 +15,12 @@ class ObjReader {
     PolygonSoup read() {
         while (lines_.next()) {
             const std::string_view key = lines_.word();
-            if (key == "v") soup_.points.push_back(lines_.point());
-            if (key == "f") takeFace();
+            if (key == "v")
+                takePoint();
+            else if (key == "f")
+                takeFace();
+            else
+                noteDropped(key);
             if (key == "t") soup_.tags.push_back({std::string(lines_.restOfLine()), lines_.number()});
         }
         checkAhead();
@@ -25,10 +29,27 @@ class ObjReader {
         if (soup_.faceCount() == 0)
             throw InputError(lines_.name(),
                              fmt::format("{} points but no faces ('f' lines); it is a point cloud", points));
+        soup_.digits = lines_.mostDigits();
         return std::move(soup_);
     }
 
   private:
+    // x y z, and behind them nothing, a weight, or a colour.
+    void takePoint() {
+        soup_.points.push_back(lines_.point());
+        if (lines_.isLineDone()) return;
+        int more = 0;
+        while (!lines_.word().empty()) ++more;
+        if (more >= 3) soup_.drop(Dropped::colours);
+    }
+    void noteDropped(std::string_view key) {
+        if (key == "vt") soup_.drop(Dropped::textureCoordinates);
+        if (key == "vn") soup_.drop(Dropped::normals);
+        if (key == "usemtl" || key == "mtllib") soup_.drop(Dropped::materials);
+        if (key == "g" || key == "o") soup_.drop(Dropped::groups);
+        if (key == "l" || key == "p") soup_.drop(Dropped::lines);
+        if (key == "curv" || key == "curv2" || key == "surf") soup_.drop(Dropped::other);
+    }
     void takeFace() {
         for (auto word = lines_.word(); !word.empty(); word = lines_.word()) takeCorner(word);
         soup_.endFace();

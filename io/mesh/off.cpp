@@ -26,6 +26,7 @@ class OffReader {
         else if (const auto word = lines_.word(); !word.empty())
             lines_.fail(fmt::format("'{}' behind the last face", shown(word)));
         soup_.tags = lines_.takeTags();
+        soup_.digits = lines_.mostDigits();
         return std::move(soup_);
     }
 
@@ -42,13 +43,26 @@ class OffReader {
         for (const std::string_view prefix : {"ST", "C", "N", "4"}) {
             if (word == "OFF" || !word.starts_with(prefix)) continue;
             word.remove_prefix(prefix.size());
+            noteBesides(prefix);
             isHomogeneous_ = prefix == "4";
+        }
+        // "OFF8 6 0": the blank is missing.
+        if (word.starts_with("OFF") && word.find_first_not_of("0123456789", 3) == word.npos) {
+            pointsWord_ = word.substr(3);
+            word = word.substr(0, 3);
         }
         if (word != "OFF") lines_.fail("an OFF file starts with 'OFF'");
     }
 
+    // What stands behind the coordinates of every point: Geomview's manual gives the numbers.
+    void noteBesides(std::string_view prefix) {
+        if (prefix == "ST") soup_.drop(Dropped::textureCoordinates), besides_ += 2;
+        if (prefix == "C") soup_.drop(Dropped::colours), besides_ += 4;
+        if (prefix == "N") soup_.drop(Dropped::normals), besides_ += 3;
+    }
+
     void takeCounts() {
-        std::string_view word = lines_.word();
+        std::string_view word = pointsWord_.empty() ? lines_.word() : pointsWord_;
         if (word.empty() && nextRow()) word = lines_.word();
         if (word == "BINARY")
             throw InputError(lines_.name(), "binary OFF is not read; save it as PLY or as ASCII OFF");
@@ -71,6 +85,8 @@ class OffReader {
             if (!nextRow()) failTruncated(points_, "points", i);
             Point p = lines_.point();
             if (isHomogeneous_) divide(p);
+            // By lines, what else stands on the line is passed over.
+            for (int k = 0; k < besides_ && !byLine_; ++k) lines_.word();
             soup_.points.push_back(p);
         }
     }
@@ -97,6 +113,7 @@ class OffReader {
                 fmt::format("a face starts with its number of corners, at least 3; found '{}'", shown(word)));
         for (std::int64_t c = 0; c < *corners; ++c) takeCorner(c, *corners);
         soup_.endFace();
+        if (byLine_ && !lines_.isLineDone()) soup_.drop(Dropped::colours);
     }
     void takeCorner(std::int64_t c, std::int64_t corners) {
         const std::string_view word = lines_.word();
@@ -120,7 +137,8 @@ class OffReader {
     bool byLine_, isHomogeneous_ = false;
     bool isWrapped_ =
         true;  // fewer lines than points and faces: they begin anywhere, not only where a line does
-    std::string_view text_;
+    std::string_view text_, pointsWord_;  // the number of points, where it stands in the keyword
+    int besides_ = 0;                     // words behind each point
     std::int64_t points_ = 0, faces_ = 0;
     PolygonSoup soup_;
 };

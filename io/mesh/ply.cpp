@@ -293,6 +293,25 @@ void readBody(Body body, const Header& header, PolygonSoup& soup) {
     }
 }
 
+Dropped kindOfProperty(std::string_view name) {
+    for (const std::string_view colour : {"red", "green", "blue", "alpha", "r", "g", "b", "a", "intensity"})
+        if (name == colour || name.ends_with("_" + std::string(colour))) return Dropped::colours;
+    for (const std::string_view uv : {"s", "t", "u", "v", "texcoord", "texnumber"})
+        if (name == uv || name.ends_with("_" + std::string(uv))) return Dropped::textureCoordinates;
+    return name == "nx" || name == "ny" || name == "nz" ? Dropped::normals : Dropped::other;
+}
+
+void noteDropped(const Header& header, PolygonSoup& soup) {
+    for (const Element& element : header.elements) {
+        const bool isVertex = element.name == "vertex", isFace = element.name == "face";
+        if (!isVertex && !isFace && element.count > 0) soup.drop(Dropped::other);
+        if (element.count == 0) continue;
+        for (const Property& property : element.properties)
+            if ((isVertex && property.axis < 0) || (isFace && !property.isCorners))
+                soup.drop(kindOfProperty(property.name));
+    }
+}
+
 bool isFloat64(const Header& header) {
     for (const Element& element : header.elements)
         for (const Property& property : element.properties)
@@ -323,6 +342,7 @@ PolygonSoup readPly(std::string_view bytes, const std::string& name) {
     soup.space = spaceIn(bytes.substr(0, bytes.size() - lines.after().size()));
     soup.float32 = !isFloat64(header);
     soup.tags = std::move(header.tags);
+    noteDropped(header, soup);
     const bool isText = header.format == "ascii";
     soup.format = isText ? "ASCII PLY" : "binary PLY";
     if (isText)

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/polygon_triangles.h"
 #include "base/read_file.h"
+#include "io/mesh/glb_reader.h"
 #include "io/mesh/lines.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/off.h"
@@ -65,14 +68,32 @@ void checkPoints(const std::string& name, const std::vector<Point>& points, bool
                               largest, float32 ? "float32" : "float64", step, extent, kFewestSteps));
 }
 
-TriangleMesh inFans(PolygonSoup&& soup) {
+// Of the format's numbers at the largest coordinate. A text's last digit is a unit of 10^(whole digits - digits).
+double stepOf(const PolygonSoup& soup) {
+    double largest = 0;
+    for (const Point& p : soup.points)
+        for (const double x : p) largest = std::max(largest, std::abs(x));
+    if (!(largest > 0)) return 0;
+    const double binary = std::ldexp(1.0, std::ilogb(largest) - (soup.float32 ? 23 : 52));
+    if (soup.digits == 0) return binary;
+    return std::max(binary, std::pow(10.0, std::floor(std::log10(largest)) + 1 - soup.digits));
+}
+
+TriangleMesh inTriangles(PolygonSoup&& soup) {
     TriangleMesh mesh;
     mesh.points = std::move(soup.points);
     mesh.triangles.reserve(soup.corners.size() - 2 * soup.faceCount());
+    std::vector<Point> polygon;
     for (std::size_t f = 0; f < soup.faceCount(); ++f) {
         const std::uint32_t* corner = soup.corners.data() + soup.faceBegin[f];
-        for (std::size_t i = 2; i < soup.faceSize(f); ++i)
-            mesh.triangles.push_back({corner[0], corner[i - 1], corner[i]});
+        if (soup.faceSize(f) == 3) {
+            mesh.triangles.push_back({corner[0], corner[1], corner[2]});
+            continue;
+        }
+        polygon.clear();
+        for (std::size_t i = 0; i < soup.faceSize(f); ++i) polygon.push_back(mesh.points[corner[i]]);
+        for (const auto& [a, b, c] : trianglesOf(polygon))
+            mesh.triangles.push_back({corner[a], corner[b], corner[c]});
     }
     return mesh;
 }
@@ -87,22 +108,61 @@ PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::stri
             return readObj(bytes, name);
         case MeshFormat::off:
             return readOff(bytes, name);
+        case MeshFormat::glb:
+            return readGlb(bytes, name);
         default:
             return readPly(bytes, name);
     }
 }
 
-bool isMeshPath(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
-    return extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
+std::string adviceFor(std::string_view extension) {
+    constexpr std::string_view kTo = "export it as STL, OBJ, PLY, OFF or GLB";
+    constexpr struct {
+        std::string_view extension, what, from;
+    } kOthers[] = {
+        {".3mf", "a 3MF archive", "in a slicer or with meshio"},
+        {".amf", "an AMF file", "in a slicer"},
+        {".gltf", "glTF with its data beside it", "as one GLB file: gltf-transform copy a.gltf a.glb, or"},
+        {".step", "a CAD model in STEP", "in FreeCAD or another CAD program"},
+        {".stp", "a CAD model in STEP", "in FreeCAD or another CAD program"},
+        {".iges", "a CAD model in IGES", "in FreeCAD or another CAD program"},
+        {".igs", "a CAD model in IGES", "in FreeCAD or another CAD program"},
+        {".brep", "a CAD model", "in FreeCAD or another CAD program"},
+        {".fcstd", "a FreeCAD document", "in FreeCAD"},
+        {".scad", "an OpenSCAD program", "in OpenSCAD"},
+        {".fbx", "an FBX scene", "in Blender"},
+        {".dae", "a Collada scene", "in Blender"},
+        {".blend", "a Blender document", "in Blender"},
+        {".3ds", "a 3D Studio scene", "in Blender"},
+        {".x3d", "an X3D scene", "in Blender or MeshLab"},
+        {".wrl", "a VRML scene", "in Blender or MeshLab"},
+        {".usdz", "a USD scene", "in Blender"},
+        {".vtk", "a VTK file", "in ParaView or with meshio"},
+        {".vtp", "a VTK file", "in ParaView or with meshio"},
+        {".msh", "a Gmsh mesh", "with gmsh or meshio"}};
+    for (const auto& other : kOthers)
+        if (extension == other.extension)
+            return fmt::format("is {}, which is not read; {} {}", other.what, kTo, other.from);
+    return {};
 }
 
-TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info, const Progress& progress) {
+bool isMeshPath(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    constexpr std::array<std::string_view, 5> kRead{".stl", ".obj", ".ply", ".off", ".glb"};
+    return std::find(kRead.begin(), kRead.end(), extension) != kRead.end();
+}
+
+MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress) {
     const std::string name = path.string(), extension = lowerCase(path.extension().string());
     if (extension == ".gz") throw InputError(name, "is compressed by gzip; gunzip it first");
-    if (!isMeshPath(path))
-        throw InputError(name,
-                         fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off", extension));
+    if (!isMeshPath(path)) {
+        const std::string advice = adviceFor(extension);
+        throw InputError(
+            name,
+            advice.empty()
+                ? fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off .glb", extension)
+                : advice);
+    }
     progress("reading", 0.0);
     const std::string bytes = readFile(path, "a mesh file");
     progress("reading", 0.2);
@@ -110,10 +170,19 @@ TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info, con
     progress("reading", 0.8);
     checkFaces(name, soup);
     checkPoints(name, soup.points, soup.float32);
-    if (info) *info = {soup.format, soup.space, static_cast<std::int64_t>(soup.faceCount())};
-    TriangleMesh mesh = inFans(std::move(soup));
+    MeshFile file;
+    file.info = {soup.format, soup.space, static_cast<std::int64_t>(soup.faceCount())};
+    file.step = stepOf(soup);
+    file.droppedNote = soup.droppedNote();
+    file.mesh = inTriangles(std::move(soup));
     progress("reading", 1.0);
-    return mesh;
+    return file;
+}
+
+TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info, const Progress& progress) {
+    MeshFile file = readMeshFile(path, progress);
+    if (info) *info = file.info;
+    return std::move(file.mesh);
 }
 
 }  // namespace isowave

@@ -17,6 +17,9 @@ struct MeshTag {
     std::size_t line = 0;  // counted from 1
 };
 
+// What a file may hold besides, and isowave does not keep.
+enum class Dropped { colours, textureCoordinates, normals, materials, groups, lines, animations, other };
+
 struct PolygonSoup {
     std::vector<Point> points;
     std::vector<std::uint32_t> corners;          // the point of each corner, polygon after polygon
@@ -24,9 +27,14 @@ struct PolygonSoup {
     std::vector<MeshTag> tags;
     std::string format, space;  // as MeshFileInfo has them
     bool float32 = false;       // the coordinates are, or could be, stored in float32
+    int digits = 0;             // of a text: the most significant digits of a coordinate
+    unsigned dropped = 0;       // bit i: Dropped i is in the file
 
     std::size_t faceCount() const { return faceBegin.size() - 1; }
     std::size_t faceSize(std::size_t f) const { return faceBegin[f + 1] - faceBegin[f]; }
+    void drop(Dropped what) { dropped |= 1u << static_cast<unsigned>(what); }
+    // "colours, materials and groups are not kept"; empty where all is.
+    std::string droppedNote() const;
     // The corners appended since the last call are a polygon.
     void endFace() { faceBegin.push_back(static_cast<std::uint32_t>(corners.size())); }
 };

@@ -57,13 +57,14 @@ void checkCount(std::string_view bytes, const std::string& name) {
 }
 
 // Three points a triangle.
-std::vector<Point> readBinary(std::string_view bytes, const std::string& name) {
+std::vector<Point> readBinary(std::string_view bytes, const std::string& name, PolygonSoup& soup) {
     checkCount(bytes, name);
     const std::size_t triangles = (bytes.size() - kStart) / kTriangle;
     std::vector<Point> points;
     points.reserve(3 * triangles);
     for (std::size_t t = 0; t < triangles; ++t) {
         const auto corners = at<std::array<FloatPoint, 3>>(bytes, kStart + kTriangle * t + kNormal);
+        if (at<std::uint16_t>(bytes, kStart + kTriangle * (t + 1) - 2) != 0) soup.drop(Dropped::colours);
         for (std::size_t i = 0; i < 3; ++i) {
             for (const float x : corners[i])
                 if (!std::isfinite(x))
@@ -79,6 +80,11 @@ std::vector<Point> readBinary(std::string_view bytes, const std::string& name) {
 class TextStl {
   public:
     TextStl(std::string_view text, const std::string& name) : lines_(text, name, Lines::Break::blank) {}
+
+    // How many solids, whether one of them has colours, the most digits of a coordinate.
+    std::size_t solids() const { return solids_; }
+    bool hasColours() const { return hasColours_; }
+    int digits() const { return lines_.mostDigits(); }
 
     // Three points a triangle. A word that STL has not, before something else is wrong, is what is wrong.
     std::vector<Point> read() {
@@ -116,8 +122,10 @@ class TextStl {
             endSolid();
         else if (isKeyword(word.substr(0, 5), "solid") && lines_.isFirstWord())
             beginSolid();
+        else if (isKeyword(word, "color"))
+            hasColours_ = true;
         else if (unknown_.empty() && lines_.isFirstWord() && !isKeyword(word, "outer") &&
-                 !isKeyword(word, "endloop") && !isKeyword(word, "color"))
+                 !isKeyword(word, "endloop"))
             unknown_ = fmt::format("line {}: '{}' is no STL keyword", lines_.number(), shown(word));
     }
     void beginSolid() {
@@ -125,6 +133,7 @@ class TextStl {
             lines_.fail(
                 fmt::format("'solid' inside the solid of line {}; 'endsolid' is missing", solidLine_));
         inSolid_ = true;
+        ++solids_;
         solidLine_ = lines_.number();
         lines_.restOfLine();
     }
@@ -154,10 +163,20 @@ class TextStl {
 
     Lines lines_;
     std::vector<Point> points_;
-    bool inSolid_ = false, inFacet_ = false;
+    bool inSolid_ = false, inFacet_ = false, hasColours_ = false;
+    std::size_t solids_ = 0;
     std::size_t solidLine_ = 0, facetLine_ = 0, corners_ = 0;
     std::string unknown_;  // the first word that STL has not, as a complaint
 };
+
+std::vector<Point> readText(std::string_view bytes, const std::string& name, PolygonSoup& soup) {
+    TextStl text(bytes, name);
+    std::vector<Point> points = text.read();
+    if (text.hasColours()) soup.drop(Dropped::colours);
+    if (text.solids() > 1) soup.drop(Dropped::groups);
+    soup.digits = text.digits();
+    return points;
+}
 
 bool allFloat32(const std::vector<Point>& points) {
     return std::all_of(points.begin(), points.end(), [](const Point& p) {
@@ -198,7 +217,7 @@ PolygonSoup readStl(std::string_view bytes, const std::string& name) {
     PolygonSoup soup;
     soup.format = binary ? "binary STL" : "ASCII STL";
     soup.space = spaceIn(bytes.substr(0, binary ? kHeader : bytes.find('\n')));
-    const std::vector<Point> corners = binary ? readBinary(bytes, name) : TextStl(bytes, name).read();
+    const std::vector<Point> corners = binary ? readBinary(bytes, name, soup) : readText(bytes, name, soup);
     DistinctPoints distinct = distinctPoints(corners);
     soup.points.reserve(distinct.firsts.size());
     for (const std::uint32_t i : distinct.firsts) soup.points.push_back(corners[i]);

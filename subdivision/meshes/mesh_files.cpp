@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "base/read_file.h"
 #include "io/mesh/lines.h"
 #include "io/mesh/read.h"
@@ -43,6 +44,32 @@ void takeTag(const MeshTag& tag, const std::string& name, PolygonMesh& mesh) {
         mesh.pinned.push_back(a);
 }
 
+// Returns how many vertices went. Those that a crease or a corner names stay, and so does a face's corner that names no
+// vertex: they are complained about by requireManifold().
+std::size_t leaveOutUnused(PolygonMesh& mesh) {
+    std::vector<bool> used(mesh.points.size());
+    const auto use = [&](Index v) {
+        if (v < used.size()) used[v] = true;
+    };
+    for (const Index v : mesh.corners) use(v);
+    for (const Crease& c : mesh.creases) use(c.a), use(c.b);
+    for (const Index v : mesh.pinned) use(v);
+    std::vector<Index> number(used.size());
+    Index count = 0;
+    for (std::size_t v = 0; v < used.size(); ++v) {
+        number[v] = count;
+        if (used[v]) mesh.points[count++] = mesh.points[v];
+    }
+    const std::size_t left = used.size() - count;
+    if (left == 0) return 0;
+    mesh.points.resize(count);
+    const auto renumber = [&](Index& v) { v = v < number.size() ? number[v] : v - static_cast<Index>(left); };
+    for (Index& v : mesh.corners) renumber(v);
+    for (Crease& c : mesh.creases) renumber(c.a), renumber(c.b);
+    for (Index& v : mesh.pinned) renumber(v);
+    return left;
+}
+
 std::vector<std::string> tagsOf(const PolygonMesh& mesh) {
     std::vector<std::string> tags;
     for (const Crease& c : mesh.creases)
@@ -69,23 +96,32 @@ MeshFormat polygonFormatOf(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().string());
     for (const MeshFormat format : {MeshFormat::obj, MeshFormat::off, MeshFormat::ply})
         if (extension == extensionOf(format)) return format;
+    if (const std::string advice = adviceFor(extension); !advice.empty())
+        throw InputError(path.string(), advice);
     throw InputError(path.string(),
                      fmt::format("'{}' is no kind of polygon mesh; they are .obj .off .ply", extension));
 }
 
-PolygonMesh readPolygonMesh(const std::filesystem::path& path) {
+PolygonMesh readPolygonMesh(const std::filesystem::path& path, std::vector<std::string>* remarks) {
     const MeshFormat format = polygonFormatOf(path);
-    return parsePolygonMesh(readFile(path, "a mesh file"), format, path.string());
+    return parsePolygonMesh(readFile(path, "a mesh file"), format, path.string(), remarks);
 }
 
-PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name) {
+PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name,
+                             std::vector<std::string>* remarks) {
     PolygonSoup soup = parseMesh(bytes, format, name);
+    if (const std::string note = soup.droppedNote(); remarks && !note.empty())
+        remarks->push_back(name + ": " + note);
     PolygonMesh mesh;
     mesh.points.reserve(soup.points.size());
     for (const Point& p : soup.points) mesh.points.push_back({p[0], p[1], p[2]});
     mesh.corners = std::move(soup.corners);
     mesh.faceBegin = std::move(soup.faceBegin);
     for (const MeshTag& tag : soup.tags) takeTag(tag, name, mesh);
+    const std::size_t unused = leaveOutUnused(mesh);
+    if (remarks && unused > 0)
+        remarks->push_back(fmt::format("{}: {} in no face left out", name,
+                                       counted(static_cast<std::int64_t>(unused), "vertex", "vertices")));
     return mesh;
 }
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "isowave/mesh.h"
 #include "subdivision/meshes/polygon_mesh.h"
@@ -21,12 +22,14 @@ namespace isowave::subdivision {
 MeshFormat polygonFormatOf(const std::filesystem::path& path);
 
 // Reads positions, faces and creases; texture coordinates, normals, colours, groups and materials are passed over.
-// PLY: ASCII or binary of either byte order. OBJ: negative indices count from the end. Nothing is merged, turned or
-// checked beyond the file itself: requireManifold() does that.
+// PLY: ASCII or binary of either byte order. OBJ: negative indices count from the end. Vertices in no face are left out, and
+// those behind them move up. Nothing is merged, turned or checked beyond the file itself: requireManifold() does that.
+// remarks: gets a line for what is not kept: colours and the like; vertices in no face.
 // Throws InputError with the line or the element and what was expected: no such file, truncated, not a number, a vertex
 // that is not there. REQUIRES: format is one of the three.
-PolygonMesh readPolygonMesh(const std::filesystem::path& path);
-PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name);
+PolygonMesh readPolygonMesh(const std::filesystem::path& path, std::vector<std::string>* remarks = nullptr);
+PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name,
+                             std::vector<std::string>* remarks = nullptr);
 
 // Decimals that read back to the same bits (OBJ, OFF), or float64 (PLY, binary little-endian).
 std::string polygonMeshBytes(const PolygonMesh& mesh, MeshFormat format);

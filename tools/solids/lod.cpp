@@ -25,12 +25,12 @@ constexpr const char* kReport = "report.json";
 struct MeshWriter {
     const MeshNames& names;
     MeshFormat format;
-    Space space;
+    MeshWriteOptions options;
     OutputFolder& out;
     LadderFiles files;
 
     void write(const std::string& name, const TriangleMesh& mesh) {
-        writeMesh(out.place(name), mesh, format, {.space = space});
+        writeMesh(out.place(name), mesh, format, options);
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
@@ -45,25 +45,33 @@ struct MeshWriter {
     }
 };
 
+// " [mm]" behind lengths where it is known.
+std::string unitShown(const Solid& solid) {
+    const InputReport& input = solid.input();
+    const std::string& unit = input.madeFrom ? input.madeFrom->unit : input.unit;
+    if (!unit.empty()) return " [" + unit + "]";
+    return solid.space() == Space::unspecified ? "" : " [mm]";
+}
+
 // What can fail for want of room comes first; then only names change.
-void finish(const Ladder& ladder, const LadderFiles& files, Space space, bool toStdout, AtomicFile* copy,
-            OutputFolder& out, Console& console) {
+void finish(const Ladder& ladder, const LadderFiles& files, const std::string& unit, bool toStdout,
+            AtomicFile* copy, OutputFolder& out, Console& console) {
     const std::string json = jsonOf(ladder, files);
     AtomicFile file(out.place(kReport));
     writeWhole(file, json);
     file.commit();
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    console.print(toStdout ? json : textOf(ladder, files, space == Space::unspecified ? "" : " [mm]"));
+    console.print(toStdout ? json : textOf(ladder, files, unit));
     console.flush();
     out.commit();
     if (copy) copy->commit();
 }
 
-// Of level 0's triangles.
+// Of the triangles of a mesh, or of level 0.
 double share(const std::string& text) {
     const double ratio = positive(text);
-    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all of level 0's triangles");
+    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
     return ratio;
 }
 
@@ -90,7 +98,8 @@ Lod::Lod()
           {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
            "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
            "with "
-           "--size), a mesh (STL, OBJ, PLY, OFF), a level set (.vdb) or a pyramid (analyse). -o out/part "
+           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse). -o "
+           "out/part "
            "makes "
            "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
            "are "
@@ -129,7 +138,8 @@ void Lod::declareBudgets() {
             budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
         });
     options_.value("--ratio", "R,R,...", "",
-                   "the same as a share of level 0's triangles (0.01 = 1 %): name_RR",
+                   "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
+                   "%): name_RR",
                    [this](const std::string& v) { budgets_.ratios = list(v, share); });
     options_.value("--tolerance", "D,D,...", "",
                    "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
@@ -165,11 +175,11 @@ int Lod::run(Console& console) {
     if (jsonToFile()) copy.emplace(*json_);
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
-        MeshWriter writer{names, format, space_.of(solid), out, {}};
+        const std::string unit = unitShown(solid);
+        MeshWriter writer{names, format, {space_.of(solid), metresPerUnitOf(solid)}, out, {}};
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
-        finish(ladder, writer.files, writer.space, jsonToStandardOutput(), copy ? &*copy : nullptr, out,
-               console);
+        finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
     }

@@ -30,20 +30,36 @@ class MeshCommand : public Command {
     bool needsOutput() const override { return true; }
 
     int run(Console& console) override {
-        const MeshFormat format = format_ ? *format_ : formatOfOutput();
+        const MeshFormat format = formatWanted();
         const int step = step_.wanted();
         OutputFile out(*output_);
         if (!needsLevel0(level_)) solid_.finestStep = step;
         Solid solid = open(arguments[0], solid_, console.progress());
         const Space space = space_.of(solid);
+        const double metresPerUnit = metresPerUnitOf(solid);
         const Level level = makeLevel(std::move(solid), step, level_, console.progress());
-        writeMesh(*output_, level.mesh, format, {.space = space});
+        writeMesh(*output_, level.mesh, format, {space, metresPerUnit});
         out.commit();
         console.print(textOf(level.report));
         return 0;
     }
 
   private:
+    // --format, or what the name says; the two may not say different things. A name may say nothing: part.tmp.
+    MeshFormat formatWanted() const {
+        if (!format_) return formatOfOutput();
+        std::optional<MeshFormat> named;
+        try {
+            named = meshFormatOf(*output_);
+        } catch (const InputError&) {
+            return *format_;
+        }
+        if (*named != *format_)
+            throw UsageError(fmt::format(
+                "-o {} and --format {} contradict each other; leave out --format or name the file {}",
+                output_->string(), extensionOf(*format_) + 1, extensionOf(*format_)));
+        return *format_;
+    }
     // A wrong extension is a wrong command line here, not bad data.
     MeshFormat formatOfOutput() const {
         try {

@@ -1,5 +1,6 @@
 #include "tools/solids/solid_options.h"
 
+#include "io/mesh/units.h"
 #include "tools/option_values.h"
 
 namespace isowave::tools {
@@ -43,6 +44,22 @@ void declareInside(OptionList& options, SolidOptions& solid) {
                   [&](const std::string& v) { solid.voxels = integer(v, 4, 1'000'000'000); });
     options.value("--voxel", "LEN", "", "meshes: sample with voxels of this size (world units)",
                   [&](const std::string& v) { solid.voxel = positive(v); });
+    options.value("--close-holes", "WIDTH", "1/6 of the diagonal, unless the area is large",
+                  "open meshes: fill holes up to this width (world units)",
+                  [&](const std::string& v) { solid.closeHoles = positive(v); });
+    options.value("--thicken", "T", "",
+                  "meshes: the solid is what lies within T/2 of the triangles; makes a plate of a sheet, at "
+                  "least 2 voxels "
+                  "thick (world units)",
+                  [&](const std::string& v) { solid.thicken = positive(v); });
+    options.value("--unit", "mm|cm|m|in|ft", "mm",
+                  "meshes: what their coordinates are measured in; coordinates stay as they are, GLB (in "
+                  "metres) and the "
+                  "report say it",
+                  [&](const std::string& v) {
+                      solid.unit = choice<std::string>(
+                          v, {{"mm", "mm"}, {"cm", "cm"}, {"m", "m"}, {"in", "in"}, {"ft", "ft"}});
+                  });
 }
 
 void declareFit(OptionList& options, SolidOptions& solid) {
@@ -198,6 +215,12 @@ void SpaceChoice::declare(OptionList& options) {
                   [this](const std::string& v) {
                       space = choice<Space>(v, {{"lps", Space::lps}, {"ras", Space::ras}});
                   });
+}
+
+double metresPerUnitOf(const Solid& solid) {
+    const InputReport& input = solid.input();
+    const std::string& unit = input.madeFrom ? input.madeFrom->unit : input.unit;
+    return metresPer(unit.empty() ? "mm" : unit);
 }
 
 Space SpaceChoice::of(const Solid& solid) const {

@@ -29,6 +29,9 @@ struct StepChoice {
 
 void declareFormat(OptionList& options, std::optional<MeshFormat>& format);
 
+// What a unit of the solid's coordinates is, in metres: of --unit, or a millimetre.
+double metresPerUnitOf(const Solid& solid);
+
 // --space.
 struct SpaceChoice {
     std::optional<Space> space;

@@ -1,5 +1,8 @@
 #include "tools/subdivision/mesh_options.h"
 
+#include "isowave/error.h"
+#include "subdivision/meshes/mesh_files.h"
+#include "tools/console.h"
 #include "tools/option_values.h"
 
 namespace isowave::tools {
@@ -17,6 +20,29 @@ void declareDepth(OptionList& options, std::string_view fallback, std::string_vi
 void declareScheme(OptionList& options, std::string& scheme) {
     options.value("--scheme", "NAME", "catmull-clark", "catmull-clark, loop or butterfly",
                   [&](const std::string& v) { scheme = v; });
+}
+
+subdivision::PolygonMesh readAndRemark(const std::filesystem::path& path, Console& console) {
+    std::vector<std::string> remarks;
+    subdivision::PolygonMesh mesh = subdivision::readPolygonMesh(path, &remarks);
+    for (const std::string& remark : remarks) console.say(remark);
+    return mesh;
+}
+
+const subdivision::MeshScheme& schemeWanted(const std::string& name) {
+    try {
+        return subdivision::meshScheme(name);
+    } catch (const InputError& error) {
+        throw UsageError(std::string("--scheme: ") + error.what());
+    }
+}
+
+std::string_view variantWanted(const subdivision::MeshScheme& scheme, const std::string& name) {
+    try {
+        return subdivision::meshVariant(scheme, name);
+    } catch (const InputError& error) {
+        throw UsageError(std::string("--variant: ") + error.what());
+    }
 }
 
 void declareCrease(OptionList& options, std::optional<double>& angle) {

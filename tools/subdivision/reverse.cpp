@@ -58,7 +58,7 @@ Reverse::Reverse()
 
 DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
     DecomposeOptions options;
-    options.variant = meshVariant(scheme, variant_);
+    options.variant = variantWanted(scheme, variant_);
     options.levels = depth_;
     options.creaseAngle = creaseAngle_;
     if (creaseAngle_ && scheme.name != "catmull-clark")
@@ -89,11 +89,11 @@ void Reverse::write(const Hierarchy& hierarchy) const {
 
 int Reverse::run(Console& console) {
     const auto& input = arguments[0];
-    const MeshScheme& scheme = meshScheme(scheme_);
+    const MeshScheme& scheme = schemeWanted(scheme_);
     const DecomposeOptions options = decomposeOptions(scheme);
     polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();
-    const PolygonMesh mesh = readPolygonMesh(input);
+    const PolygonMesh mesh = readAndRemark(input, console);
     const Hierarchy hierarchy = [&] {
         try {
             return decompose(mesh, scheme, options, console.progress());

@@ -31,15 +31,15 @@ class Subdivide : public Command {
     int run(Console& console) override;
 
   private:
-    PolygonMesh coarse() const;
+    PolygonMesh coarse(Console& console) const;
 
     int depth_ = 1;
     std::string scheme_ = "catmull-clark";
     std::optional<double> creaseAngle_;
 };
 
-PolygonMesh Subdivide::coarse() const {
-    PolygonMesh mesh = readPolygonMesh(arguments[0]);
+PolygonMesh Subdivide::coarse(Console& console) const {
+    PolygonMesh mesh = readAndRemark(arguments[0], console);
     requireManifold(mesh, arguments[0].string());
     if (creaseAngle_) {
         const auto found = creasesByAngle(mesh, Adjacency(mesh), *creaseAngle_);
@@ -49,10 +49,10 @@ PolygonMesh Subdivide::coarse() const {
 }
 
 int Subdivide::run(Console& console) {
-    const MeshScheme& scheme = meshScheme(scheme_);
+    const MeshScheme& scheme = schemeWanted(scheme_);
     polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();
-    const PolygonMesh before = coarse();
+    const PolygonMesh before = coarse(console);
     const PolygonMesh mesh = [&] {
         try {
             return subdivided(before, scheme, depth_, console.progress());

@@ -379,6 +379,21 @@ TEST(ReadMesh, TakesLineBreaksOfOffForBlanks) {
     expectTetrahedron(
         readBytes("a.off", replaced(replaced(kTetrahedronOff, "OFF", "4OFF"), "0 0 0\n1 0 0\n0 1 0\n0 0 1",
                                     "0 0 0 1\n2 0 0 2\n0 3 0 3\n0 0 1 1")));
+    expectTetrahedron(readBytes("a.off", replaced(kTetrahedronOff, "OFF\n4 4 0", "OFF4 4 0")));
+    // Normals, colours, texture coordinates behind the points, and faces over several lines.
+    const std::string broken = replaced(kTetrahedronOff, "3 0 2 1", "3\n0\n2 1");
+    for (const auto& [keyword, more] : {std::pair{"NOFF", " 0 0 1"},
+                                        {"COFF", " 1 0 0 1"},
+                                        {"CNOFF", " 0 0 1 1 0 0 1"},
+                                        {"STOFF", " 0.5 0.5"}}) {
+        std::string points;
+        for (const char* point : {"0 0 0", "1 0 0", "0 1 0", "0 0 1"})
+            points += std::string(point) + more + "\n";
+        const std::string text =
+            replaced(replaced(broken, "OFF", keyword), "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", points);
+        expectTetrahedron(readBytes("a.off", text));
+        expectTetrahedron(readBytes("a.off", replaced(text, "3\n0\n2 1", "3 0 2 1")));
+    }
     // A coordinate is gone, a line is there twice: as many words as there should be, but not by accident.
     EXPECT_REFUSED("a.off",
                    replaced(replaced(kTetrahedronOff, "1 0 0\n0 1 0", " 1 0"), "3 0 2 1", "3 0 2 1\n3 0 2 1"),
@@ -416,6 +431,147 @@ TEST(ReadMesh, BelievesNoCount) {
     EXPECT_REFUSED("a.ply", replaced(binaryPly(kBall), "uchar int", "uint int"), "it is truncated");
 }
 
+// The signed area of a flat mesh seen from above, and the sum of its triangles' areas: the same where none overlaps.
+std::pair<double, double> areasOf(const TriangleMesh& mesh) {
+    double sum = 0, all = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Point &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+        const double twice = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        sum += twice / 2;
+        all += std::abs(twice) / 2;
+    }
+    return {sum, all};
+}
+
+TEST(ReadMesh, CutsConcavePolygonsWithoutOverlaps) {
+    for (const int corners : {10, 16, 150, 300, 900}) {  // stars; by weight, and by ears
+        for (const int first : {0, 1}) {
+            std::string obj, face = "f";
+            double area = 0;
+            Point last{}, before{};
+            for (int i = 0; i < corners; ++i) {
+                const double r = (i + first) % 2 ? 10 : 4, at = 2 * M_PI * i / corners;
+                const Point p{r * std::cos(at), r * std::sin(at), 0};
+                obj += "v " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " 0\n";
+                face += " " + std::to_string(i + 1);
+                if (i == 0) before = p;
+                if (i > 0) area += (last[0] * p[1] - last[1] * p[0]) / 2;
+                last = p;
+            }
+            area += (last[0] * before[1] - last[1] * before[0]) / 2;
+            const TriangleMesh mesh = readBytes("a.obj", obj + face + "\n");
+            ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(corners - 2));
+            const auto [sum, all] = areasOf(mesh);
+            EXPECT_NEAR(sum, area, 1e-4) << corners;
+            EXPECT_NEAR(all, area, 1e-4) << corners;
+        }
+    }
+    // A plate with a hole, cut in by a bridge that is walked both ways.
+    const TriangleMesh plate =
+        readBytes("a.obj",
+                  "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nv 3 3 0\nv 3 7 0\nv 7 7 0\nv 7 3 0\n"
+                  "f 1 2 3 4 1 5 6 7 8 5\n");
+    const auto [sum, all] = areasOf(plate);
+    EXPECT_NEAR(sum, 84, 1e-9);
+    EXPECT_NEAR(all, 84, 1e-9);
+}
+
+TEST(ReadMesh, SaysWhatIsNotKept) {
+    const auto noteOf = [](const char* name, const std::string& bytes) {
+        return readMeshFile(written(name, bytes)).droppedNote;
+    };
+    EXPECT_EQ(noteOf("a.obj", kTetrahedronObj), "");
+    EXPECT_EQ(noteOf("a.obj",
+                     "mtllib a.mtl\no x\nvt 0 0\n" + replaced(kTetrahedronObj, "v 0 0 0", "v 0 0 0 1 1 0.5")),
+              "colours, texture coordinates, materials and groups are not kept");
+    EXPECT_EQ(noteOf("a.obj", "vn 0 0 1\n" + kTetrahedronObj), "normals are not kept");
+    EXPECT_EQ(noteOf("a.ply", kTetrahedronPly), "");
+    EXPECT_EQ(noteOf("a.ply", replaced(replaced(kTetrahedronPly, "double z\n",
+                                                "double z\nproperty uchar red\nproperty float quality\n"),
+                                       "0 0 0\n1 0 0\n0 1 0\n0 0 1\n",
+                                       "0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n0 0 1 1 1\n")),
+              "colours and other properties are not kept");
+    EXPECT_EQ(noteOf("a.off", kTetrahedronOff), "");
+    EXPECT_EQ(noteOf("a.off", replaced(kTetrahedronOff, "3 0 2 1", "3 0 2 1 255 0 0")),
+              "colours are not kept");
+    EXPECT_EQ(noteOf("a.stl", binaryStl(kBall)), "");
+    std::string coloured = binaryStl(kBall);
+    coloured[84 + 49] = '\x7f';
+    EXPECT_EQ(noteOf("a.stl", coloured), "colours are not kept");
+}
+
+TEST(ReadMesh, KnowsHowFineItsNumbersAre) {
+    const auto stepOf = [](const char* name, const std::string& bytes) {
+        return readMeshFile(written(name, bytes)).step;
+    };
+    const TriangleMesh ball = shapes::sphere(10, 1, {1, 2, 3});  // largest coordinate 13
+    EXPECT_EQ(stepOf("a.stl", binaryStl(ball)), std::ldexp(1.0, 3 - 23));
+    std::string digits;
+    for (const char* p : {"v 0 0 0", "v 12.3456 0 0", "v 0 1 0", "v 0 0 1"}) digits += std::string(p) + "\n";
+    EXPECT_DOUBLE_EQ(stepOf("a.obj", digits + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"), 1e-4);
+    EXPECT_EQ(stepOf("a.ply", binaryPly(ball)), std::ldexp(1.0, 3 - 23));
+}
+
+// Two nodes over one mesh of a triangle strip that makes a tetrahedron's four faces, in another node that is turned and far
+// away; the second one is mirrored.
+std::string tetrahedraGlb(const std::string& nodes) {
+    std::string binary;
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) append(binary, x);
+    for (const int i : {0, 2, 1, 3, 0, 2}) append(binary, static_cast<std::uint16_t>(i));
+    std::string json =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+        R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0}]}],)"
+        R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+        R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],)"
+        R"("buffers":[{"byteLength":60}]})";
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    std::string glb = "glTF";
+    append(glb, std::uint32_t{2});
+    append(glb, static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + binary.size()));
+    append(glb, static_cast<std::uint32_t>(json.size()));
+    append(glb, std::uint32_t{0x4e4f534a});
+    glb += json;
+    append(glb, static_cast<std::uint32_t>(binary.size()));
+    append(glb, std::uint32_t{0x004e4942});
+    return glb + binary;
+}
+
+TEST(ReadMesh, ReadsGlbWithTheTransformsOfItsNodes) {
+    MeshFileInfo info;
+    const std::string glb = tetrahedraGlb(
+        R"([{"children":[1,2],"translation":[500000,0,100]},{"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476]},)"
+        R"({"mesh":0,"matrix":[-2,0,0,0, 0,2,0,0, 0,0,2,0, 10,0,0,1]}])");
+    const TriangleMesh mesh = readBytes("a.glb", glb, &info);
+    EXPECT_EQ(info.format, "GLB");
+    ASSERT_EQ(mesh.points.size(), 8u);
+    EXPECT_EQ(mesh.triangles.size(), 8u);
+    EXPECT_TRUE(checks::isClosedAndOriented(mesh));
+    EXPECT_NEAR(checks::volumeOf(mesh), (1 + 8) / 6.0 * 1e9, 1e3);  // in mm, the mirrored one not inside out
+    // The quarter turn about z takes (1, 0, 0) to (0, 1, 0), y up; in mm and z up.
+    EXPECT_NEAR(mesh.points[1][0], 500000e3, 1e-6);
+    EXPECT_NEAR(mesh.points[1][1], -100e3, 1e-6);
+    EXPECT_NEAR(mesh.points[1][2], 1e3, 1e-6);
+    EXPECT_EQ(readMeshFile(written("a.glb", glb)).droppedNote, "materials and groups are not kept");
+}
+
+TEST(ReadMesh, RefusesGlbThatItCannotRead) {
+    const std::string glb = tetrahedraGlb(R"([{"mesh":0}])");
+    for (std::size_t size = 1; size < glb.size(); ++size)
+        EXPECT_THROW(readBytes("a.glb", glb.substr(0, size)), InputError) << size;
+    EXPECT_REFUSED("a.glb", tetrahedraGlb(R"([{"mesh":1}])"), "refers to number 1 of 'meshes', which has 1");
+    EXPECT_REFUSED("a.glb", tetrahedraGlb(R"([{"children":[0]}])"), "its nodes hold each other");
+    EXPECT_REFUSED("a.glb", replaced(glb, "\"count\":4", "\"count\":5"), "reaches beyond its data");
+    EXPECT_REFUSED("a.glb", replaced(glb, "\"count\":4", "\"count\":2"), "a triangle refers to point 2");
+    EXPECT_REFUSED("a.glb", replaced(glb, "\"scene\":0", "\"scene\"=0"), "not valid JSON");
+    EXPECT_REFUSED("a.glb", "glTX" + glb.substr(4), "does not start with 'glTF'");
+}
+
+TEST(ReadMesh, SaysHowToConvertWhatItDoesNotRead) {
+    for (const char* name : {"a.3mf", "a.STEP", "a.stp", "a.fbx", "a.gltf", "a.dae"})
+        EXPECT_THAT([&] { readMesh(name); }, refuses("export it as STL, OBJ, PLY, OFF or GLB")) << name;
+}
+
 TEST(ReadMesh, CutsPolygonsIntoFans) {
     MeshFileInfo info;
     const TriangleMesh mesh =
@@ -433,12 +589,14 @@ TEST(ReadMesh, IsSilentAndSurvivesDamage) {
                                       {"a.ply", binaryPly(kBall)},
                                       {"a.obj", kTetrahedronObj},
                                       {"a.off", kTetrahedronOff},
-                                      {"b.ply", kTetrahedronPly}}) {
+                                      {"b.ply", kTetrahedronPly},
+                                      {"b.stl", asciiStl()},
+                                      {"a.glb", tetrahedraGlb(R"([{"mesh":0}])")}}) {
         std::mt19937 random(7);
-        for (int trial = 0; trial < 300; ++trial) {
+        for (int trial = 0; trial < 3000; ++trial) {
             std::string damaged = bytes;
             for (int i = 0; i < 1 + trial % 3; ++i) {
-                damaged[random() % std::min<std::size_t>(damaged.size(), 600)] =
+                damaged[random() % std::min<std::size_t>(damaged.size(), 1200)] =
                     static_cast<char>(random() % 256);
             }
             try {
@@ -456,7 +614,7 @@ TEST(ReadMesh, IsSilentAndSurvivesDamage) {
 }
 
 TEST(IsMeshPath, GoesByTheExtension) {
-    for (const char* name : {"a.stl", "b.STL", "c.Obj", "d.ply", "e.off"})
+    for (const char* name : {"a.stl", "b.STL", "c.Obj", "d.ply", "e.off", "f.glb"})
         EXPECT_TRUE(isMeshPath(name)) << name;
     for (const char* name : {"a.nrrd", "stl", "a.stl.gz", ""}) EXPECT_FALSE(isMeshPath(name)) << name;
 }

@@ -455,25 +455,53 @@ TEST(MeshWriter, RefusesFloat32WhereVerticesCannotBeToldApartAndRecommendsPly) {
     TriangleMesh mesh = ringMesh();
     for (Point& p : mesh.points)
         for (double& x : p) x = 1000 + 1e-5 * x;
-    for (const MeshFormat format : {MeshFormat::stl, MeshFormat::glb}) {
-        const fs::path path = freshFolder("refuse") / (std::string("a") + extensionOf(format));
-        try {
-            writeMesh(path, mesh, format);
-            FAIL() << extensionOf(format);
-        } catch (const OperationError& e) {
-            EXPECT_NE(std::string(e.what()).find(format == MeshFormat::stl ? "STL" : "GLB"),
-                      std::string::npos);
-            EXPECT_NE(std::string(e.what()).find("PLY"), std::string::npos) << e.what();
-            EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
-        }
-        EXPECT_TRUE(fs::is_empty(path.parent_path()));
-        fs::remove_all(path.parent_path());
+    const fs::path path = freshFolder("refuse") / "a.stl";
+    try {
+        writeMesh(path, mesh, MeshFormat::stl);
+        FAIL();
+    } catch (const OperationError& e) {
+        EXPECT_NE(std::string(e.what()).find("STL"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("PLY"), std::string::npos) << e.what();
+        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
     }
+    EXPECT_TRUE(fs::is_empty(path.parent_path()));
+    fs::remove_all(path.parent_path());
+    // GLB has a translation in double for the place.
+    EXPECT_TRUE(good(mergeEqualPoints(writeAndRead(mesh, MeshFormat::glb))));
     EXPECT_TRUE(good(mergeEqualPoints(writeAndRead(mesh, MeshFormat::ply))));
     TriangleMesh huge = ringMesh();
     huge.points[5][1] = 1e39;
     EXPECT_THROW(writeAndRead(huge, MeshFormat::stl), OperationError);
     EXPECT_EQ(writeAndRead(huge, MeshFormat::ply).points, huge.points);
+}
+
+// A ball of radius 5 at UTM coordinates in metres, as surveys have it: float32 has steps of 0.5 there.
+TEST(MeshWriter, KeepsTheShapeOfWhatIsFarFromTheOriginInGlb) {
+    const Vec3 centre{500123.4, 5812345.6, 37.2};
+    TriangleMesh ball = ringMesh();
+    for (Point& p : ball.points) {
+        const Vec3 from{p[0], p[1], p[2]}, out = from / length(from);
+        p = {centre.x + 5 * out.x, centre.y + 5 * out.y, centre.z + 5 * out.z};
+    }
+    const fs::path folder = freshFolder("far"), path = folder / "a.glb";
+    for (const double metres : {1.0, 0.001}) {
+        writeMesh(path, ball, MeshFormat::glb, {.metresPerUnit = metres});
+        const ReadMesh stored = readGlb(bytesOf(path));
+        const auto place = stored.json["nodes"][0]["translation"].get<Point>();
+        EXPECT_NEAR(place[0], centre.x * metres, 5 * metres);
+        EXPECT_NEAR(place[2], -centre.y * metres, 5 * metres);
+        const TriangleMesh back = isowave::readMesh(path);
+        ASSERT_EQ(back.points.size(), ball.points.size());
+        EXPECT_EQ(back.triangles, ball.triangles);
+        for (const Point& p : back.points) {
+            const double mm = 1000 * metres;
+            EXPECT_NEAR(length(Vec3{p[0] / mm, p[1] / mm, p[2] / mm} - centre), 5,
+                        1e-6);  // seen 3e-7; before, 0.5
+        }
+    }
+    writeMesh(path, ringMesh(), MeshFormat::glb);
+    EXPECT_FALSE(readGlb(bytesOf(path)).json["nodes"][0].contains("translation"));
+    fs::remove_all(folder);
 }
 
 // ---- failures
