@@ -1,5 +1,6 @@
 #include "tools/subdivision/mesh_options.h"
 
+#include "subdivision/meshes/mesh_schemes.h"
 #include "tools/option_values.h"
 
 namespace isowave::tools {
@@ -27,6 +28,17 @@ void declareCrease(OptionList& options, std::optional<double>& angle) {
                       if (*angle < 0 || *angle > 180)
                           throw UsageError("'" + v + "' is not between 0 and 180");
                   });
+}
+
+void refuseCrease(const std::optional<double>& angle, std::string_view scheme) {
+    if (angle && scheme != "catmull-clark")
+        throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme) +
+                         " has no creases");
+}
+
+const subdivision::MeshScheme& meshSchemeAsked(const std::string& scheme) {
+    return asked("--scheme",
+                 [&]() -> const subdivision::MeshScheme& { return subdivision::meshScheme(scheme); });
 }
 
 }  // namespace isowave::tools

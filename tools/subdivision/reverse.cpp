@@ -58,12 +58,10 @@ Reverse::Reverse()
 
 DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
     DecomposeOptions options;
-    options.variant = meshVariant(scheme, variant_);
+    options.variant = asked("--variant", [&] { return meshVariant(scheme, variant_); });
     options.levels = depth_;
     options.creaseAngle = creaseAngle_;
-    if (creaseAngle_ && scheme.name != "catmull-clark")
-        throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme.name) +
-                         " has no creases");
+    refuseCrease(creaseAngle_, scheme.name);
     return options;
 }
 
@@ -89,7 +87,7 @@ void Reverse::write(const Hierarchy& hierarchy) const {
 
 int Reverse::run(Console& console) {
     const auto& input = arguments[0];
-    const MeshScheme& scheme = meshScheme(scheme_);
+    const MeshScheme& scheme = meshSchemeAsked(scheme_);
     const DecomposeOptions options = decomposeOptions(scheme);
     polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();

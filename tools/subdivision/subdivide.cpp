@@ -49,7 +49,8 @@ PolygonMesh Subdivide::coarse() const {
 }
 
 int Subdivide::run(Console& console) {
-    const MeshScheme& scheme = meshScheme(scheme_);
+    const MeshScheme& scheme = meshSchemeAsked(scheme_);
+    refuseCrease(creaseAngle_, scheme.name);
     polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();
     const PolygonMesh before = coarse();
