@@ -107,7 +107,7 @@ double keptIn(const Curves& curves, double H, const std::vector<ThinSample>& sam
 }
 
 bool tabulate(const std::string& path) {
-    Input input = readInput(path, {.invert = true});
+    Input input = readInput(path);
     const Region inside = input.shape->inside;
     const double side = input.extent.high.x + 0.5, height = input.extent.high.y + 0.5;
     const Bits level0 = bits(static_cast<int>(side), static_cast<int>(height), 1,

@@ -40,6 +40,38 @@ Picture readByContent(const std::string& bytes, const std::string& name) {
                      ".json or .txt");
 }
 
+template <class F>
+bool allOfBorder(std::int32_t width, std::int32_t height, const F& holds) {
+    for (std::int32_t x = 0; x < width; ++x)
+        if (!holds(x, 0) || !holds(x, height - 1)) return false;
+    for (std::int32_t y = 0; y < height; ++y)
+        if (!holds(0, y) || !holds(width - 1, y)) return false;
+    return true;
+}
+
+// The last channel.
+std::vector<float> opacityOf(const Picture& picture) {
+    std::vector<float> values;
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    values.reserve(picture.sampleCount() / channels);
+    withType(picture.type, [&]<class T>(T) {
+        const auto samples = picture.as<T>();
+        for (std::size_t k = channels - 1; k < samples.size(); k += channels)
+            values.push_back(static_cast<float>(samples[k]));
+    });
+    return values;
+}
+
+// A drawing of any colour on transparent ground is what is opaque.
+void drawOnTransparentGround(const Picture& picture, Bitmap& bitmap) {
+    if (!picture.hasOpacity) return;
+    Bitmap opaque{bitmap.width, bitmap.height, opacityOf(picture), true};
+    const double half = picture.fullValue() / 2;
+    if (allOfBorder(opaque.width, opaque.height, [&](auto x, auto y) { return opaque.at(x, y) < half; }) &&
+        valueRange(opaque).high > half)
+        bitmap = std::move(opaque);
+}
+
 // ---- iso line
 
 // Values relative to the iso value, positive outside. Outside the image there is the mirror image of the
@@ -116,8 +148,14 @@ Bitmap readBitmap(const std::filesystem::path& path) {
                                      picture.pages));
     Bitmap bitmap{static_cast<std::int32_t>(picture.width), static_cast<std::int32_t>(picture.height),
                   luminance(picture)};
+    drawOnTransparentGround(picture, bitmap);
     refuseNotFinite(name, bitmap);
     return bitmap;
+}
+
+bool hasLightGround(const Bitmap& bitmap, double iso) {
+    return allOfBorder(bitmap.width, bitmap.height, [&](auto x, auto y) { return bitmap.at(x, y) > iso; }) &&
+           valueRange(bitmap).low <= iso;
 }
 
 Shape shapeOf(const Bitmap& bitmap, double iso, bool invert, const std::string& name) {
@@ -140,9 +178,9 @@ Shape shapeOf(const Bitmap& bitmap, double iso, bool invert, const std::string& 
         const ValueRange range = valueRange(bitmap);
         throw InputError(name,
                          fmt::format("no pixel is inside: values run from {} to {}, inside is {} {}; choose "
-                                     "another --iso{}",
+                                     "another --iso or {}",
                                      range.low, range.high, invert ? "at most" : "above", iso,
-                                     invert ? "" : " or --invert"));
+                                     invert ? "leave --invert out" : "--invert"));
     }
     for (std::int32_t y = -1; y < bitmap.height; ++y) {
         SpanCursor below(shape.inside.row(y)), above(shape.inside.row(y + 1));

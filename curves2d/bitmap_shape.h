@@ -12,6 +12,7 @@ namespace isowave::curves2d {
 struct Bitmap {
     std::int32_t width = 0, height = 0;
     std::vector<float> values;
+    bool isOpacity = false;  // the values: of a drawing on transparent ground
 
     float at(std::int32_t x, std::int32_t y) const {
         return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -26,8 +27,11 @@ struct ValueRange {
 ValueRange valueRange(const Bitmap& bitmap);
 
 // PNG, TIFF, BMP, PGM and PBM, by their first bytes: grey values as stored, colours and opacity as luminance() of
-// io/picture has them. Throws InputError: not an image, truncated, zero size, several pages, NaN.
+// io/picture has them, laid on white; where the whole border is transparent (less than half opaque), the opacity itself. Throws InputError: not an image, truncated, zero size, several pages, NaN.
 Bitmap readBitmap(const std::filesystem::path& path);
+
+// Whether all pixels of the border exceed `iso`, and some others do not: these are a drawing, and the border is its ground.
+bool hasLightGround(const Bitmap& bitmap, double iso);
 
 // Inside is where the value exceeds `iso` (with `invert`: where it does not). What touches the border of the
 // image is closed half a pixel outside it. boundary: the iso line of the bilinear interpolation, in chords.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "curves2d/bitmap_shape.h"
@@ -19,6 +21,18 @@ namespace {
 constexpr double kSmoothTolerance = 0.1;  // pixels
 constexpr double kSheetTolerance = 1e-3;  // of the picture's longer side
 
+// What was taken for the drawing.
+std::string groundText(bool isOpacity, bool onLight, bool invert) {
+    const std::string light = isOpacity ? "opaque" : "light", dark = isOpacity ? "transparent" : "dark";
+    const std::string& inside = invert != onLight ? dark : light;
+    std::string text = "inside is what is " + inside;
+    if (isOpacity && !invert)
+        text += ", since the border is transparent";
+    else if (onLight && !invert)
+        text += ", since the whole border is light";
+    return text + (invert ? " (--invert)" : "; --invert turns that round");
+}
+
 Input inputOf(const Bitmap& bitmap, const InputOptions& options, const std::string& name) {
     Input input;
     const ValueRange range = valueRange(bitmap);
@@ -30,8 +44,10 @@ Input inputOf(const Bitmap& bitmap, const InputOptions& options, const std::stri
     if (!options.iso && !range.twoValues)
         input.remarks.push_back(
             fmt::format("--iso {:g}: the middle of the values {:g} .. {:g}", middle, range.low, range.high));
-    input.shape =
-        std::make_shared<const Shape>(shapeOf(bitmap, options.iso.value_or(middle), options.invert, name));
+    const double iso = options.iso.value_or(middle);
+    const bool onLight = hasLightGround(bitmap, iso);
+    input.remarks.push_back(groundText(bitmap.isOpacity, onLight, options.invert));
+    input.shape = std::make_shared<const Shape>(shapeOf(bitmap, iso, options.invert != onLight, name));
     input.extent.take(Point{-0.5, -0.5});
     input.extent.take(Point{bitmap.width - 0.5, bitmap.height - 0.5});
     input.fit = range.twoValues ? Fit::binary : Fit::distance;
@@ -66,6 +82,30 @@ Input pictureInput(std::int32_t width, std::int32_t height, std::vector<float> v
     return inputOf(Bitmap{width, height, std::move(values)}, options, name);
 }
 
+namespace {
+
+// Of polygons that have a piece of border in common, in the same points.
+std::size_t neighbourCount(const std::vector<Polygon>& polygons) {
+    std::vector<std::tuple<double, double, double, double, std::size_t>> pieces;
+    for (std::size_t i = 0; i < polygons.size(); ++i)
+        for (const Ring& ring : polygons[i].rings)
+            for (std::size_t k = 0; k < ring.size(); ++k) {
+                Point a = ring[k], b = ring[(k + 1) % ring.size()];
+                if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
+                pieces.emplace_back(a.x, a.y, b.x, b.y, i);
+            }
+    std::sort(pieces.begin(), pieces.end());
+    std::set<std::size_t> neighbours;
+    for (std::size_t k = 1; k < pieces.size(); ++k) {
+        const auto& [ax, ay, bx, by, i] = pieces[k - 1];
+        const auto& [cx, cy, dx, dy, j] = pieces[k];
+        if (i != j && std::tie(ax, ay, bx, by) == std::tie(cx, cy, dx, dy)) neighbours.insert({i, j});
+    }
+    return neighbours.size();
+}
+
+}  // namespace
+
 Input polygonInput(const std::vector<Polygon>& polygons, const InputOptions& options,
                    const Progress& progress, const std::string& name) {
     Input input;
@@ -81,6 +121,11 @@ Input polygonInput(const std::vector<Polygon>& polygons, const InputOptions& opt
     input.yUp = true;
     input.pixel = shape->frame.spacing.x;
     input.shape = std::move(shape);
+    if (const std::size_t neighbours = neighbourCount(polygons))
+        input.remarks.push_back(fmt::format(
+            "{} of {} polygons share borders, which vanish: the curves are the outline of all together; give "
+            "each a file of its own to draw it apart",
+            neighbours, polygons.size()));
     input.kind = fmt::format("{} polygons of {} rings, {} points", polygons.size(), rings, points);
     return input;
 }
@@ -91,7 +136,7 @@ Input readInput(const std::filesystem::path& path, const InputOptions& options, 
     if (!looksLikePolygons(path)) return inputOf(readBitmap(path), options, path.string());
     const PolygonInput polygons = readPolygons(path);
     Input input = polygonInput(polygons.polygons, options, progress, path.string());
-    input.remarks = polygons.remarks;
+    input.remarks.insert(input.remarks.begin(), polygons.remarks.begin(), polygons.remarks.end());
     return input;
 }
 

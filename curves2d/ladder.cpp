@@ -67,6 +67,7 @@ Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, Hold hold,
     std::optional<SegmentTree> finest;
     std::optional<LevelHolder> holder;
     double spacing = 0;
+    bool hasEnded = false;
     const auto tell = [&](StepFacts facts, const RowField<float>& f, const Curves& curves,
                           const Curves& traced) {
         if (facts.step > 0) {
@@ -75,9 +76,12 @@ Ladder traceSteps(RowField<float> field, std::optional<int> lastStep, Hold hold,
             facts.rmsToLevel0 = d.rms;
         }
         ladder.steps.push_back(facts);
+        hasEnded = curves.rings.empty();
         if (visit) visit(facts, f, curves, traced);
     };
+    // What has vanished stays so: a coarser step could hold something again, which is no part of the input any more.
     const auto onStep = [&](int step, const RowField<float>& f) {
+        if (hasEnded) return;
         if (holder && step % 2 == 0) {
             const HeldLevel level = holder->hold(f, progress);
             StepFacts facts = factsOf(step, f, level.curves);

@@ -113,8 +113,26 @@ void refuseFault(const GeoGeometry& geometry, std::size_t polygon, const std::st
     throw InputError(name, fmt::format("a {} without a list \"{}\"", geometry.type, last));
 }
 
+// Degrees of longitude, as GeoJSON has them: an edge between two points near the 180th meridian, on either side of it, is one
+// across it. As it stands it would run around the world.
+void refuseAntimeridian(const Ring& ring, const std::string& place, const std::string& name) {
+    constexpr double kNear = 150;
+    const auto isDegrees = [](Point p) { return std::abs(p.x) <= 180 && std::abs(p.y) <= 90; };
+    const auto isAcross = [](Point a, Point b) {
+        const bool isCut = std::abs(a.x) == 180 && std::abs(b.x) == 180;
+        return !isCut && a.x * b.x < 0 && std::min(std::abs(a.x), std::abs(b.x)) > kNear;
+    };
+    if (!std::all_of(ring.begin(), ring.end(), isDegrees)) return;
+    for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+        if (isAcross(ring[i], ring[i + 1]))
+            throw InputError(
+                name, fmt::format("{}: crosses the antimeridian between points {} ({}, {}) and {} ({}, {}); "
+                                  "RFC 7946, 3.1.9 wants it cut there: ogr2ogr -wrapdateline does so",
+                                  place, i, ring[i].x, ring[i].y, i + 1, ring[i + 1].x, ring[i + 1].y));
+}
+
 void readJson(const GeoJson& file, Collector& out) {
-    if (file.complaint()) throw InputError(out.name(), "is no JSON, or truncated: " + *file.complaint());
+    if (file.complaint()) throw InputError(out.name(), *file.complaint());
     if (!file.type()) throw InputError(out.name(), "JSON without a \"type\"; expected GeoJSON or TopoJSON");
     std::size_t polygon = 0;
     for (const GeoGeometry& geometry : file.geometries()) {
@@ -130,7 +148,9 @@ void readJson(const GeoJson& file, Collector& out) {
             const GeoLine& line = geometry.lines[r];
             const std::string place = fmt::format("polygon {}, ring {}", polygon, r);
             if (line.fault) refuseFault(*line.fault, place, out.name());
-            out.ring(ringOf(line.points), place, true);
+            Ring ring = ringOf(line.points);
+            refuseAntimeridian(ring, place, out.name());
+            out.ring(std::move(ring), place, true);
         }
         out.endPolygon();
         ++polygon;

@@ -64,7 +64,10 @@ class Maker {
         : choice_(choice),
           budgets_(budgets),
           deviation_(options.deviation),
-          mesher_(options, openBorder, LevelMesher::Facts::thinToo, truth, progress, clock),
+          mesher_(options, openBorder,
+                  budgets.wanted() && !options.levels && !options.steps ? LevelMesher::Facts::ofBudget
+                                                                        : LevelMesher::Facts::thinToo,
+                  truth, progress, clock),
           visitor_(visitor),
           progress_(progress),
           clock_(clock) {}

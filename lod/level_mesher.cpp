@@ -94,6 +94,7 @@ LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border
       openBorder_(openBorder),
       wantsThin_(options.hold == Holding::shift ||
                  (options.hold == Holding::none && facts == Facts::thinToo)),
+      facts_(facts),
       truth_(truth),
       progress_(progress),
       clock_(clock) {
@@ -213,7 +214,7 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
 LevelMesh LevelMesher::make(int step, const BSplineField& given) {
     LevelMesh level = chosen(step, fieldToDraw(step, given));
     limit(level);
-    before_ = countsOf(level.report.topology);
+    if (step == 0 || mustFall(step)) before_ = countsOf(level.report.topology);
     if (step == 0) {
         level0_->counts = *before_;
         tellWalls(level.report);
@@ -226,7 +227,7 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
     LevelMesh level = madeAt(sampled(step, field), step, field);
     int refine = level.report.refine;
     if (options_.hold == Holding::shift) return shifted(std::move(level), step, field);
-    if (!holds(step) || options_.refine || openBorder_) return level;
+    if (!holds(step) || !mustFall(step) || options_.refine || openBorder_) return level;
     while (refine < kFinestRefine && isMore(countsOf(level.report.topology), level0_->counts)) {
         LevelMesh finer = madeAt({refine *= 2}, step, field);
         if (!isMore(countsOf(level.report.topology), countsOf(finer.report.topology))) break;
@@ -238,7 +239,8 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
 // From level to level nothing becomes more, and nothing is more than was asked for.
 void LevelMesher::limit(LevelMesh& level) {
     LevelReport& report = level.report;
-    const bool falls = options_.hold == Holding::local && before_ && report.step != 0;
+    const bool falls =
+        options_.hold == Holding::local && before_ && report.step != 0 && mustFall(report.step);
     const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
@@ -396,6 +398,12 @@ LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) {
 }
 
 bool LevelMesher::compacts(int refine) const { return options_.compact || (!options_.refine && refine > 1); }
+
+// Cuts and fills take seconds a step, and those that only a budget may choose go without.
+bool LevelMesher::mustFall(int step) const {
+    const bool isLevel = step % kStepsPerLevel == 0 || options_.steps || facts_ == Facts::few;
+    return isLevel && facts_ != Facts::ofBudget;
+}
 
 bool LevelMesher::holds(int step) const { return step != 0 && level0_ && level0_->hold; }
 

@@ -31,7 +31,9 @@ struct LevelMesh {
 
 class LevelMesher {
   public:
-    enum class Facts { few, thinToo };  // thinToo: also say how much of what is thin is kept
+    // thinToo: also say how much of what is thin is kept. ofBudget: no level is asked for, only a step for a budget to choose,
+    // which may have more parts, handles and cavities than the step before.
+    enum class Facts { few, thinToo, ofBudget };
     // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
     LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
                 const InputTruth& truth, const Progress& progress, StageClock& clock);
@@ -69,6 +71,7 @@ class LevelMesher {
     void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin, TriangleMesh ready = {});
     LevelMesh madeAt(Sampled sampled, int step, const BSplineField& field);
     bool holds(int step) const;
+    bool mustFall(int step) const;
     void hold(LevelMesh& level) const;
     void tellWalls(LevelReport& report) const;
     void tellDifference(const LevelReport& report) const;
@@ -87,10 +90,11 @@ class LevelMesher {
     const LevelOptions options_;
     std::optional<Border> openBorder_;
     bool wantsThin_;
+    Facts facts_;
     InputTruth truth_;
     double smallest0_ =
         0;  // what is smaller goes at step 0: what the input has no more parts and cavities for
-    std::optional<SolidCounts> before_;  // of the step made before
+    std::optional<SolidCounts> before_;  // of the step made before, of those that must not have more
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;

@@ -43,6 +43,7 @@ class Collapsing {
         : mesh_(mesh), progress_(progress), wanted_(static_cast<std::int64_t>(mesh.triangles.size())) {
         wanted_ = std::max<std::int64_t>(0, (wanted_ - options.triangles + 1) / 2);
         if (options.longest > 0) limits_.longest2 = options.longest * options.longest;
+        if (options.deviation > 0) limits_.deviation2 = options.deviation * options.deviation;
         for (const Point& p : mesh.points) bounds_.add(toVec3(p));
         quadrics_.resize(mesh.points.size());
     }
@@ -52,8 +53,9 @@ class Collapsing {
     CollapseReport run() {
         if (wanted_ == 0) return report_;
         cut(0);
-        double cost = isSmall() ? kInfinity : pilot();
-        for (int round = 0, idle = 0; left() > 0 && idle < kPatience; ++round) {
+        double cost = isSmall() || isBounded() ? kInfinity : pilot();
+        const int patience = isBounded() ? kPatienceBounded : kPatience;
+        for (int round = 0, idle = 0; left() > 0 && idle < patience; ++round) {
             progress_("collapsing", static_cast<double>(report_.collapsed) / static_cast<double>(wanted_));
             if (round > 0) cut(round);
             if (round > 1) cost = idle > 0 ? kInfinity : kRaise * cost;
@@ -68,6 +70,7 @@ class Collapsing {
   private:
     static constexpr std::size_t kSmall = 50'000;  // triangles
     static constexpr int kPatience = 4;            // idle rounds: every shift was tried
+    static constexpr int kPatienceBounded = 2;  // what is refused once is refused again, but beside borders
     static constexpr std::int64_t kIdle =
         100;                                // a round is idle that does less than this part of what is left
     static constexpr double kRaise = 2;     // of the cost allowed, from round to round
@@ -107,6 +110,9 @@ class Collapsing {
         for (std::size_t block = 0; block < blocks_.size(); ++block)
             if (first_[block] != first_[block + 1]) used_.push_back(block);
     }
+
+    // By the deviation of each collapse: all that it allows are wanted, at any cost.
+    bool isBounded() const { return limits_.deviation2 < kInfinity; }
 
     // One block for all: it is done before a pilot would be.
     bool isSmall() const { return mesh_.triangles.size() <= kSmall; }
@@ -166,6 +172,7 @@ class Collapsing {
             report_.refusedTopology += r.refusedTopology;
             report_.refusedShape += r.refusedShape;
             report_.refusedSheets += r.refusedSheets;
+            report_.refusedDeviation += r.refusedDeviation;
         }
         std::erase_if(mesh_.triangles, isDegenerate);
     }

@@ -6,9 +6,11 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "isowave/error.h"
-#include "simplify/triangle_subset.h"
+#include "isowave/ladder.h"
+#include "simplify/collapse.h"
 
 namespace isowave {
 namespace {
@@ -16,8 +18,6 @@ namespace {
 // A step is decimated to a quarter, a quarter of that and so on, as long as this many times the triangles
 // wanted are left; Collapse starts there.
 constexpr std::int64_t kDecimated = 4;
-// For a tolerance: as long as the decimated mesh is within this share of it.
-constexpr double kDecimationShare = 0.25;
 
 // For a number of triangles: Collapse::Options::errorFloor, as shares of the distance that decimate() ends
 // with. The one that ends nearest wins.
@@ -25,12 +25,6 @@ constexpr std::array<double, 3> kErrorFloors{0.6, 0.42, 0.3};
 
 // A step that is itself so many times as far from level 0 as the best mesh so far is not collapsed.
 constexpr double kHopeless = 2;
-
-// A mesh of so few triangles is not decimated.
-constexpr std::int64_t kFewTriangles = 2000;
-
-// To rank candidates, so many triangles of level 0 are enough; what is reported is measured from all of them.
-constexpr std::size_t kRankingTriangles = 20'000;
 
 std::string limitsText(const TopologyLimits& limits) {
     std::string text;
@@ -50,25 +44,20 @@ bool TopologyLimits::allow(const MeshTopology& topology) const {
 }
 
 BudgetChooser::BudgetChooser(std::vector<StepMesh> steps, const TopologyLimits& limits, std::string name)
-    : steps_(std::move(steps)),
-      name_(std::move(name)),
-      original_(steps_.front().mesh),
-      sample_(evenSubset(steps_.front().mesh, kRankingTriangles)) {
+    : steps_(std::move(steps)), name_(std::move(name)), original_(steps_.front().mesh) {
     assert(steps_.front().step == 0);
     for (const StepMesh& step : steps_)
         if (limits.allow(step.topology)) allowed_.push_back(&step);
     if (allowed_.empty())
         throw InputError(name_, "no step has " + limitsText(limits) + "; loosen the limits");
-}
-
-MeshComparison BudgetChooser::measured(const TriangleMesh& mesh, double enough,
-                                       const Progress& progress) const {
-    return compareMeshes(mesh, steps_.front().mesh, 0, progress, enough);
-}
-
-double BudgetChooser::roughDistance(const TriangleMesh& mesh, const Progress& progress) const {
-    return std::max(original_.distanceFrom(mesh, 0, progress).max,
-                    DistanceTarget(mesh).distanceFrom(sample_, 0, progress).max);
+    const auto pieces = [](const StepMesh& s) { return s.topology.components + s.topology.genus; };
+    std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
+    for (const StepMesh* step : allowed_) {
+        if (step != allowed_.front() && (step->step % kStepsPerLevel != 0 || pieces(*step) >= fewest))
+            continue;
+        fewest = pieces(*step);
+        chains_.emplace_back(*step, original_, steps_.front().voxel);
+    }
 }
 
 // ---- a number of triangles
@@ -90,18 +79,19 @@ const TriangleMesh& BudgetChooser::decimated(const StepMesh& from, int times, co
 
 BudgetChooser::Trial BudgetChooser::collapsed(const StepMesh& from, std::int64_t triangles,
                                               const Progress& progress) {
-    if (from.topology.triangles <= triangles) return {&from, from.mesh, roughDistance(from.mesh, progress)};
+    if (from.topology.triangles <= triangles)
+        return {&from, from.mesh, original_.roughDistance(from.mesh, progress)};
     int times = 0;
     for (std::int64_t left = from.topology.triangles / 4; left >= kDecimated * triangles; left /= 4) ++times;
     const TriangleMesh& start = decimated(from, times, progress);
     // How far a collapse gets that does not measure distances; one that does gets nearer.
-    const double rough = original_.distanceFrom(decimate(start, triangles, progress), 0, progress).max;
+    const double rough = original_.target.distanceFrom(decimate(start, triangles, progress), 0, progress).max;
     std::optional<Trial> best;
     for (const double share : kErrorFloors) {
-        Collapse collapse(start, steps_.front().mesh, original_, {from.voxel, share * rough}, progress);
+        Collapse collapse(start, original_.mesh, original_.target, {from.voxel, share * rough}, progress);
         collapse.reduce(triangles, std::numeric_limits<double>::infinity(), progress);
         Trial trial{&from, collapse.mesh(), 0};
-        trial.distance = roughDistance(trial.mesh, progress);
+        trial.distance = original_.roughDistance(trial.mesh, progress);
         const auto rank = [&](const Trial& t) {
             return std::pair(static_cast<std::int64_t>(t.mesh.triangles.size()) > triangles, t.distance);
         };
@@ -141,7 +131,7 @@ BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& 
     std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; i < tried.size(); ++i) {
         if (best)
-            if (const double own = roughDistance(tried[i]->mesh, progress);
+            if (const double own = original_.roughDistance(tried[i]->mesh, progress);
                 own > kHopeless * best->distance) {
                 list += fmt::format(", {} ({:.3g} by itself)", tried[i]->step, own);
                 continue;
@@ -169,46 +159,17 @@ BudgetMesh BudgetChooser::withTriangles(std::int64_t triangles, const Progress& 
 
 // ---- a distance
 
-std::optional<TriangleMesh> BudgetChooser::collapsedWithin(const StepMesh& from, double distance,
-                                                           const Progress& progress) {
-    int times = 0;
-    while (from.step == 0 &&
-           static_cast<std::int64_t>(decimated(from, times, progress).triangles.size()) > kFewTriangles &&
-           roughDistance(decimated(from, times + 1, progress), progress) <= kDecimationShare * distance)
-        ++times;
-    // What a collapse costs is measured at points, so the true distance is somewhat larger than the largest
-    // cost. The limit on the cost is raised bit by bit, and the last mesh that is proven to be within is the
-    // result.
-    constexpr std::array<double, 6> kShares{0.25, 0.4, 0.55, 0.7, 0.85, 1.0};
-    std::optional<TriangleMesh> within;
-    if (from.step == 0) within = from.mesh;
-    Collapse collapse(decimated(from, times, progress), steps_.front().mesh, original_,
-                      {from.voxel, kShares.front() * distance}, progress);
-    for (const double share : kShares) {
-        collapse.reduce(4, share * distance, progress);
-        TriangleMesh mesh = collapse.mesh();
-        if (measured(mesh, distance, progress).maxBound > distance) break;
-        within = std::move(mesh);
-    }
-    return within;
-}
-
 BudgetMesh BudgetChooser::withinDistance(double distance, const Progress& progress) {
-    std::vector<const StepMesh*> tried{allowed_.front()};
-    // From the coarsest on; those that are far are told from samples.
-    for (auto step = allowed_.rbegin(); step != allowed_.rend() - 1; ++step)
-        if (roughDistance((*step)->mesh, progress) <= distance) {
-            tried.push_back(*step);
-            break;
-        }
     std::string list;
     std::optional<BudgetMesh> best;
-    for (const StepMesh* step : tried) {
-        std::optional<TriangleMesh> mesh = collapsedWithin(*step, distance, progress);
-        list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", step->step,
-                            mesh ? fmt::format("{} triangles", mesh->triangles.size()) : "too far");
-        if (mesh && (!best || mesh->triangles.size() < best->mesh.triangles.size()))
-            best = BudgetMesh{std::move(*mesh), step->step, {}, {}};
+    for (std::size_t i = 0; i < chains_.size(); ++i) {
+        ToleranceChain& chain = chains_[i];
+        if (i > 0 && chain.ownDistance(progress) > distance) break;
+        auto made = chain.within(distance, progress);
+        list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", chain.step(),
+                            made ? fmt::format("{} triangles", made->mesh.triangles.size()) : "too far");
+        if (made && (!best || made->mesh.triangles.size() < best->mesh.triangles.size()))
+            best = BudgetMesh{std::move(made->mesh), chain.step(), {}, made->distance};
     }
     if (!best)
         throw InputError(name_,
@@ -226,14 +187,12 @@ BudgetMesh BudgetChooser::choose(const Budget& budget, const Progress& progress)
             result = withTriangles(static_cast<std::int64_t>(budget.value), progress);
             break;
         case Budget::Kind::distance:
-            result = withinDistance(budget.value, progress);
-            break;
+            return withinDistance(budget.value, progress);
         case Budget::Kind::none:
             result = {allowed_.front()->mesh, allowed_.front()->step, "the finest step that is allowed", {}};
             break;
     }
-    const double enough = budget.kind == Budget::Kind::distance ? budget.value : 0;
-    result.distance = measured(result.mesh, enough, progress);
+    result.distance = compareMeshes(result.mesh, original_.mesh, 0, progress);
     return result;
 }
 

@@ -5,9 +5,10 @@
 //                 triangles, whose topology suits the count; and the coarsest one of at least N. Where none comes
 //                 down to N, holes and parts being in the way, coarser steps follow one by one. Of those that came
 //                 down the one with the smallest distance to level 0 is taken, the larger of both sides.
-//   distance D    The finest step is collapsed as far as D allows, and so is the coarsest step that is itself
-//                 within D of level 0; the one with fewer triangles is taken. Its distance is measured with a
-//                 bound (MeshComparison::maxBound), which is at most D.
+//   distance D    The finest step is collapsed as far as D allows, and so is each whole level that is itself within
+//                 D of level 0 and has fewer parts or handles (simplify/tolerance_chain.h); the one with the fewest triangles is taken. Its distance is
+//                 measured with a bound (MeshComparison::maxBound), which is at most D. A larger D never gets more
+//                 triangles.
 //   neither       The finest step.
 // Limits on the topology choose which steps may be taken at all; a collapse changes neither genus nor
 // components.
@@ -19,7 +20,7 @@
 #include <vector>
 
 #include "lod/simplifier.h"
-#include "simplify/collapse.h"
+#include "simplify/tolerance_chain.h"
 
 namespace isowave {
 
@@ -40,17 +41,14 @@ class BudgetChooser {
     BudgetMesh withTriangles(std::int64_t triangles, const Progress& progress);
     BudgetMesh withinDistance(double distance, const Progress& progress);
     Trial collapsed(const StepMesh& from, std::int64_t triangles, const Progress& progress);
-    std::optional<TriangleMesh> collapsedWithin(const StepMesh& from, double distance,
-                                                const Progress& progress);
     const TriangleMesh& decimated(const StepMesh& from, int times, const Progress& progress);
-    MeshComparison measured(const TriangleMesh& mesh, double enough, const Progress& progress) const;
-    double roughDistance(const TriangleMesh& mesh, const Progress& progress) const;
 
     std::vector<StepMesh> steps_;
     std::vector<const StepMesh*> allowed_;
     std::string name_;
-    DistanceTarget original_;
-    TriangleMesh sample_;  // some of level 0's triangles, for distances that only rank
+    OriginalSurface original_;
+    std::vector<ToleranceChain>
+        chains_;  // for distances: of the finest step that is allowed, and of whole levels
     std::map<std::pair<int, int>, TriangleMesh> decimated_;  // by step and number of quarterings
 };
 

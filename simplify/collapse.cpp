@@ -523,14 +523,17 @@ std::array<float, 3> normalAt(const TriangleMesh& surface, const NearestPoint& n
 
 }  // namespace
 
-TriangleMesh Collapse::mesh() const {
-    TriangleMesh mesh = meshOf(state_->surface);
-    if (state_->reference.normals.empty()) return mesh;
+TriangleMesh withNormalsOf(const TriangleMesh& surface, const DistanceTarget& original, TriangleMesh mesh) {
+    if (surface.normals.empty() || !mesh.normals.empty()) return mesh;
     mesh.normals.resize(mesh.points.size());
     tbb::parallel_for(std::size_t{0}, mesh.points.size(), [&](std::size_t i) {
-        mesh.normals[i] = normalAt(state_->reference, state_->original.nearest(mesh.points[i]));
+        mesh.normals[i] = normalAt(surface, original.nearest(mesh.points[i]));
     });
     return mesh;
+}
+
+TriangleMesh Collapse::mesh() const {
+    return withNormalsOf(state_->reference, state_->original, meshOf(state_->surface));
 }
 
 }  // namespace isowave

@@ -17,6 +17,10 @@ namespace isowave {
 // oriented, 2-manifold.
 TriangleMesh decimate(const TriangleMesh& mesh, std::int64_t triangles, const Progress& progress = {});
 
+// `mesh` with the normals of `surface` at the nearest points of `original`, which was made of it; as it is where `surface` has
+// none, or `mesh` has some already.
+TriangleMesh withNormalsOf(const TriangleMesh& surface, const DistanceTarget& original, TriangleMesh mesh);
+
 // A surface on its way to fewer and fewer triangles. Every triangle carries the points of the original that
 // it stands for (Klein, Liebich and Strasser 1996). A collapse costs the largest distance that it would leave
 // between the triangles around the edge and their points, either way; the cheapest collapse comes next. So it
@@ -53,7 +57,7 @@ class Collapse {
                 const Progress& progress = {});
 
     std::int64_t triangles() const;
-    // What is left, with the normals of the original's nearest points where it has normals.
+    // What is left, with normals as withNormalsOf() has them.
     TriangleMesh mesh() const;
 
     static constexpr double kNeedle = 1e-3;  // height by longest side

@@ -20,6 +20,7 @@
 #include "base/triangle.h"
 #include "isowave/error.h"
 #include "simplify/boxes.h"
+#include "simplify/graph_bound.h"
 #include "simplify/nearest_on_triangle.h"
 
 namespace isowave {
@@ -277,10 +278,17 @@ struct DistanceTarget::Tree {
     double distanceToTriangle(const Vec3& p, std::uint32_t triangle) const {
         return std::sqrt(squaredLength(p - nearestOn(p, triangle)));
     }
-    BoundedPiece bounded(const Piece& piece, const Sample& centroid) const {
+    // graph, enough: where there is a limit to prove, what it takes to prove it for a piece over many triangles.
+    BoundedPiece bounded(const Piece& piece, const Sample& centroid, const GraphBound* graph,
+                         double enough) const {
         const double convex = boundByConvexity(
             piece, centroid, [this](const Vec3& p, std::uint32_t t) { return distanceToTriangle(p, t); });
-        return {piece, centroid, std::min(convex, boundByWay(piece, centroid))};
+        double bound = std::min(convex, boundByWay(piece, centroid));
+        if (graph && bound > enough)
+            if (const auto flat =
+                    graph->over({piece[0].at, piece[1].at, piece[2].at}, centroid.nearest, enough))
+                bound = std::min(bound, *flat);
+        return {piece, centroid, bound};
     }
 
     struct Maximum {
@@ -288,16 +296,16 @@ struct DistanceTarget::Tree {
         std::int64_t samples;  // that it took
     };
     // The largest distance over pieces of which `found` is a sample, each bound falling as pieces are halved,
-    // until it is close to the maximum or no more than `wanted`.
+    // until it is close to the maximum or no more than `wanted`. limit: not null where `wanted` is a limit to prove.
     // invariant: no point of any piece, nor of those dropped for being certain, is farther than
     // maximum.bound.
     Maximum tighten(std::vector<BoundedPiece> pieces, double found, double restBound, double wanted,
-                    bool limit, std::int64_t mostSamples, const Progress& progress) const;
+                    const GraphBound* limit, std::int64_t mostSamples, const Progress& progress) const;
 };
 
 DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedPiece> pieces, double found,
-                                                            double restBound, double wanted, bool limit,
-                                                            std::int64_t mostSamples,
+                                                            double restBound, double wanted,
+                                                            const GraphBound* limit, std::int64_t mostSamples,
                                                             const Progress& progress) const {
     Maximum maximum{found, std::max(found, restBound), 0};
     const auto enough = [&] { return std::max({(1 + kTightness) * maximum.found, wanted, restBound}); };
@@ -322,7 +330,8 @@ DistanceTarget::Tree::Maximum DistanceTarget::Tree::tighten(std::vector<BoundedP
             if (i % kChunk == 0) progress.check();
             const auto measureAt = [this](const Vec3& p) { return sampleAt(p); };
             const std::array<Piece, 2> parts = halves(pieces[i].corners, measureAt);
-            for (int k = 0; k < 2; ++k) halved[i][k] = bounded(parts[k], measureAt(centroidOf(parts[k])));
+            for (int k = 0; k < 2; ++k)
+                halved[i][k] = bounded(parts[k], measureAt(centroidOf(parts[k])), limit, wanted);
         });
         maximum.samples += 3 * static_cast<std::int64_t>(pieces.size());
         for (const auto& both : halved)
@@ -393,13 +402,16 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
     for (const Sample& corner : corners) largestCorner = std::max(largestCorner, corner.distance);
 
     const double area = areaOf(from), wanted = std::max(enough, kTightnessOfExtent * diagonalOf(from));
+    std::optional<GraphBound> graph;
+    if (enough > 0) graph.emplace(tree_->mesh);
     std::vector<Sums> sums((from.triangles.size() + kChunk - 1) / kChunk);
     std::vector<UncertainPieces> uncertain(sums.size(), UncertainPieces(std::max(largestCorner, wanted)));
     forChunks(from.triangles.size(), progress, "distances of triangles",
               [&](std::size_t first, std::size_t last, std::size_t chunk) {
                   const auto visit = [&](const Piece& piece, const Sample& centroid) {
                       if (!boundEnough) return;
-                      const BoundedPiece bounded = tree_->bounded(piece, centroid);
+                      const BoundedPiece bounded =
+                          tree_->bounded(piece, centroid, graph ? &*graph : nullptr, wanted);
                       sums[chunk].maxBound = std::max(sums[chunk].maxBound, bounded.bound);
                       uncertain[chunk].add(bounded);
                   };
@@ -430,8 +442,8 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
         restBound = std::max(restBound, chunk.restBound());
     }
     const std::int64_t most = enough > 0 ? kProvingSamples : std::max(total.samples, kTighteningSamples);
-    const Tree::Maximum maximum =
-        tree_->tighten(std::move(pieces), total.max, restBound, wanted, enough > 0, most, progress);
+    const Tree::Maximum maximum = tree_->tighten(std::move(pieces), total.max, restBound, wanted,
+                                                 graph ? &*graph : nullptr, most, progress);
     return {total.distance / total.weight,
             std::sqrt(total.square / total.weight),
             maximum.found,

@@ -119,6 +119,7 @@ Filters maskFilters(const Mask& mask, std::optional<int> width) {
 }
 
 Filters namedFilters(std::string_view name, std::optional<int> width) {
+    if (name == "dlg" && !width) return namedFilters("dlg-refined", width);  // what it stands for on curves
     if (isMaskName(name)) return maskFilters(namedMask(name), width ? width : usualWidth(name));
     if (name.starts_with("bspline-")) {
         int degree = 0;
@@ -139,8 +140,9 @@ Filters namedFilters(std::string_view name, std::optional<int> width) {
         return construct(scheme.mask, width.value_or(scheme.width));
     }
     CurveScheme scheme = curveScheme(name);
-    if (!width) return interiorFilters(scheme);
-    return construct(scheme.mask, *width);
+    Filters filters = width ? construct(scheme.mask, *width) : interiorFilters(scheme);
+    if (!width && scheme.mask.name == "dlg") filters.mask.name = scheme.name;  // it has three fits
+    return filters;
 }
 
 BoundaryFilters boundaryFilters(std::string_view name) {

@@ -152,8 +152,10 @@ enum class Hold { none, local };
 
 struct InputOptions {
     std::optional<double> iso = std::nullopt;  // pictures; without it the middle of the range of values
-    bool invert = false;                       // pictures: inside is where the value does not exceed iso
-    std::int32_t pixels = 1024;                // polygons: along the longer side
+    // Pictures. Inside is where the value exceeds iso; where that is the whole border of the picture, and not all of it, it is
+    // the ground, and inside is the drawing, where the value does not. invert: the other way round.
+    bool invert = false;
+    std::int32_t pixels = 1024;  // polygons: along the longer side
 };
 
 struct Shape;  // curves2d/fit.h: the lattice points inside, and the boundary between them
@@ -284,7 +286,8 @@ class LadderStep {
 };
 
 struct Ladder {
-    std::vector<StepFacts> steps;    // from step 0 on, visited or not
+    std::vector<StepFacts>
+        steps;  // from step 0 on, visited or not, to the last or to the first without a ring
     std::int64_t coefficients = 0;   // what the wavelet transform stores
     std::int64_t controlPoints = 0;  // of step 0
     Fit fit = Fit::distance;

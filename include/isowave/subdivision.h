@@ -361,8 +361,10 @@ struct ReliefReportOptions {
     bool compare = false;  // what the other schemes make of the relief without details
 };
 
-// The relief at every level. Grids have the samples where they were: level k has 2^k times fewer a side, of the largest
-// middle part whose sides can be halved so often. Quincunx leaves NaN outside the hexagon.
+// The relief at every level. Grids have the samples where they were: sample (r, c) of level k lies where (r 2^k, c 2^k) of
+// level 0 does, and a grid of n rows has floor((n - 1) / 2^k) + 1 there. Rows takes a grid of any size: where its sides cannot
+// be halved so often it is continued by its mirror image, which is cut off again; only details and nodes count that too.
+// Quincunx takes the largest hexagon in the middle and leaves NaN outside.
 struct ReliefReport {
     struct Level {
         std::string patch;  // "parallelogram 8 x 4"

@@ -224,6 +224,23 @@ Json toJson(const Polyline& line) {
     return points;
 }
 
+// byte: counted from 1, the last one read; beyond the end where more was expected.
+std::string complaintAt(std::string_view text, std::size_t byte) {
+    const std::size_t at = std::min(byte == 0 ? 0 : byte - 1, text.size());
+    const std::string_view before = text.substr(0, at);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    if (at >= text.size())
+        return fmt::format("ends in line {} (byte {}), before its brackets are closed; it is truncated", line,
+                           text.size());
+    std::string found(text.substr(at, 20));
+    for (char& c : found)
+        if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
+    return fmt::format(
+        "line {}, column {}: found '{}', where JSON expects something else; it is damaged or no JSON", line,
+        at - lineStart + 1, found);
+}
+
 }  // namespace
 
 struct GeoJson::Document {
@@ -235,9 +252,11 @@ GeoJson::GeoJson(const std::string& text, Positions positions, const std::string
     Json& root = document->root;
     try {
         root = Json::parse(withoutByteOrderMark(text));
-    } catch (const nlohmann::json::exception& error) {
-        complaint_ = error.what();
-        std::replace(complaint_->begin(), complaint_->end(), '\n', ' ');
+    } catch (const nlohmann::json::parse_error& error) {
+        complaint_ = complaintAt(withoutByteOrderMark(text), error.byte);
+        return;
+    } catch (const nlohmann::json::exception&) {  // a number beyond double
+        complaint_ = "has a number that is too large; it is damaged";
         return;
     }
     if (root.is_object() && root.contains("type")) type_ = typeOf(root);

@@ -56,7 +56,7 @@ class GeoJson {
 
     const std::optional<std::string>& complaint() const {
         return complaint_;
-    }                                                                 // the JSON parser's, on one line
+    }  // with the line and what was found there
     const std::optional<std::string>& type() const { return type_; }  // of the whole document
     // As they stand in the document; those of a topology by the names of its objects.
     const std::vector<GeoGeometry>& geometries() const { return geometries_; }

@@ -216,6 +216,7 @@ bool Block::take(const Entry& top) {
         push({c.cost, v0, v1, stamp | kPlaced});
         return false;
     }
+    if (c.deviation2 > limits_.deviation2) return ++counts_.refusedDeviation, false;
     if (!isShapely(c)) return ++counts_.refusedShape, false;
     if (!isClear(c)) return ++counts_.refusedSheets, false;
     apply(c);
@@ -291,6 +292,7 @@ bool Block::place(Candidate& c) {
     if (!isNear(x)) x = middle;
     c.at = origin + x;
     c.cost = std::max(0.0, q.at(x));
+    c.deviation2 = limits_.deviation2 < kInfinity ? q.meanSquareAt(x) : 0;
     return isInside(c.at);
 }
 

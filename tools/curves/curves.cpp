@@ -178,14 +178,16 @@ void CurvesCommand::declareDrawing() {
 }
 
 void CurvesCommand::declareInput() {
-    options_.value("--iso", "V", "the middle of the range of values",
-                   "images: the curve is where the value is V; inside is where it is larger",
-                   [this](const std::string& v) { iso_ = number(v); });
+    options_.value(
+        "--iso", "V", "the middle of the range of values",
+        "images: the curve is where the value is V; inside is where it is larger, on light ground where it "
+        "is not",
+        [this](const std::string& v) { iso_ = number(v); });
     options_.value("--pixels", "N", "1024", "polygons: sample with N pixels along the longer side",
                    [this](const std::string& v) {
                        pixels_ = static_cast<std::int32_t>(integer(v, 1, std::int64_t{1} << 22));
                    });
-    options_.flag("--invert", "swap inside and outside", invert_);
+    options_.flag("--invert", "images: the ground is inside, and not what is taken for the drawing", invert_);
 }
 
 void CurvesCommand::declareFit() {
@@ -254,10 +256,13 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::stri
         console.progress());
     for (const std::string& remark : fitRemarks(report.ladder.fitReport)) console.say(remark);
     const int last = report.ladder.steps.back().step;
+    const bool isEmpty = report.ladder.steps.back().points == 0;
+    const std::string end = isEmpty ? "nothing is left" : "one node is left";
     if (levels_ && last < levels_->first * kStepsPerPlaneLevel)
-        throw InputError(report.path,
-                         fmt::format("ends at level {} with one node left; --levels begins at {}",
-                                     last / kStepsPerPlaneLevel, levels_->first));
+        throw InputError(report.path, fmt::format("ends at level {}, where {}; --levels begins at {}",
+                                                  last / kStepsPerPlaneLevel, end, levels_->first));
+    if (isEmpty)
+        console.say(fmt::format("{}: nothing is left; the ladder ends here", curves2d::stepName(last)));
     writer.report(report.pixel, report);
     report.peakMemoryBytes = peakMemoryBytes();
     if (draw_.sheet) sheet = writer.sheet();
@@ -265,10 +270,10 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::stri
 }
 
 void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out, Console& console) const {
-    if (jsonToStandardOutput()) console.print(jsonOf(report));
-    if (table_) console.print(table(report));
     if (draw_.smooth) console.say(smoothRemark(report));
-    if (!jsonToStandardOutput()) console.print(summary(report, out.folder().string()));
+    if (jsonToStandardOutput()) return console.print(jsonOf(report));
+    if (table_) console.print(table(report));
+    console.print(summary(report, out.folder().string()));
 }
 
 int CurvesCommand::run(Console& console) {
@@ -277,8 +282,12 @@ int CurvesCommand::run(Console& console) {
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     if (draw_.sheet) out.keepFree(*draw_.sheet);
+    std::optional<OutputFile> copyFolders;
     std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
-    if (jsonToFile()) copy.emplace(*json_);
+    if (jsonToFile()) {
+        copyFolders.emplace(*json_);
+        copy.emplace(*json_);
+    }
 
     std::string sheetText;
     const CurvesReport report = climb(out, console, sheetText);
@@ -297,6 +306,7 @@ int CurvesCommand::run(Console& console) {
         sheetPlace->commit();
     }
     if (copy) copy->commit();
+    if (copyFolders) copyFolders->commit();
     tellAll(report, out, console);
     return 0;
 }

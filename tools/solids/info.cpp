@@ -1,7 +1,9 @@
 // isowave info FILE: what is in it.
 #include <algorithm>
 
+#include "base/text.h"
 #include "io/mesh/equal_points.h"
+#include "isowave/error.h"
 #include "lod/open_image.h"
 #include "lod/open_mesh.h"
 #include "lod/solid.h"
@@ -80,6 +82,19 @@ PyramidInfo pyramidInfo(const fs::path& path, const LevelOptions& options, Conso
     return info;
 }
 
+// What other commands read is no mystery.
+std::string adviceFor(const fs::path& path) {
+    const std::string extension = toLower(path.extension().string());
+    const auto isOneOf = [&](std::initializer_list<const char*> all) {
+        return fs::is_regular_file(path) && std::find(all.begin(), all.end(), extension) != all.end();
+    };
+    if (isOneOf({".png", ".bmp", ".pgm", ".pbm", ".ppm", ".npy", ".asc"}))
+        return "; isowave curves draws the outline of a picture, isowave relief takes its values as heights";
+    if (isOneOf({".geojson", ".json", ".topojson", ".svg", ".txt"}))
+        return "; isowave curves makes levels of polygons, isowave curve-levels of lines";
+    return "";
+}
+
 class Info : public Command {
   public:
     Info()
@@ -96,7 +111,16 @@ class Info : public Command {
     }
 
     int run(Console& console) override {
-        const fs::path& path = arguments[0];
+        try {
+            tellOf(arguments[0], console);
+        } catch (const InputError& error) {
+            throw InputError(error.what() + adviceFor(arguments[0]));
+        }
+        return 0;
+    }
+
+  private:
+    void tellOf(const fs::path& path, Console& console) {
         switch (lod::kindOf(path, solid_)) {
             case lod::InputKind::image:
                 show(console, imageInfo(path, solid_, console));
@@ -111,10 +135,8 @@ class Info : public Command {
                 show(console, pyramidInfo(path, level_, console));
                 break;
         }
-        return 0;
     }
 
-  private:
     template <class Report>
     void show(Console& console, const Report& info) {
         tell(console, textOf(info), jsonOf(info));

@@ -171,8 +171,12 @@ int Lod::run(Console& console) {
     checkRanges(levels_);
     const MeshNames names(out.name(), format, levels_, budgets_);
     refuseTaken(names, out);
+    std::optional<OutputFile> copyFolders;
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
-    if (jsonToFile()) copy.emplace(*json_);
+    if (jsonToFile()) {
+        copyFolders.emplace(*json_);
+        copy.emplace(*json_);
+    }
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
         const std::string unit = unitShown(solid);
@@ -180,6 +184,7 @@ int Lod::run(Console& console) {
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
         finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
+        if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
     }

@@ -13,6 +13,7 @@
 #include "tools/output.h"
 #include "tools/report/curve_levels.h"
 #include "tools/subdivision/filter_options.h"
+#include "tools/subdivision/mesh_options.h"
 
 namespace isowave::tools {
 namespace {
@@ -89,7 +90,8 @@ CurveReport CurveLevels::reported(const CurveFile& file) const {
 int CurveLevels::run(Console& console) {
     if (mask_ && scheme_) throw UsageError("--mask: is a scheme of its own; leave --scheme out");
     if (width_ && !mask_) throw UsageError("--width: belongs to --mask; write --scheme cubic-7 otherwise");
-    if (scheme_) curveScheme(*scheme_);  // a wrong name is not the file's fault
+    if (scheme_)
+        asked("--scheme", [&] { return curveScheme(*scheme_); });  // a wrong name is not the file's fault
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     openJson();

@@ -1,6 +1,5 @@
 #include "tools/subdivision/mesh_options.h"
 
-#include "isowave/error.h"
 #include "subdivision/meshes/mesh_files.h"
 #include "tools/console.h"
 #include "tools/option_values.h"
@@ -30,19 +29,12 @@ subdivision::PolygonMesh readAndRemark(const std::filesystem::path& path, Consol
 }
 
 const subdivision::MeshScheme& schemeWanted(const std::string& name) {
-    try {
-        return subdivision::meshScheme(name);
-    } catch (const InputError& error) {
-        throw UsageError(std::string("--scheme: ") + error.what());
-    }
+    return asked("--scheme",
+                 [&]() -> const subdivision::MeshScheme& { return subdivision::meshScheme(name); });
 }
 
 std::string_view variantWanted(const subdivision::MeshScheme& scheme, const std::string& name) {
-    try {
-        return subdivision::meshVariant(scheme, name);
-    } catch (const InputError& error) {
-        throw UsageError(std::string("--variant: ") + error.what());
-    }
+    return asked("--variant", [&] { return subdivision::meshVariant(scheme, name); });
 }
 
 void declareCrease(OptionList& options, std::optional<double>& angle) {
@@ -53,6 +45,12 @@ void declareCrease(OptionList& options, std::optional<double>& angle) {
                       if (*angle < 0 || *angle > 180)
                           throw UsageError("'" + v + "' is not between 0 and 180");
                   });
+}
+
+void refuseCrease(const std::optional<double>& angle, std::string_view scheme) {
+    if (angle && scheme != "catmull-clark")
+        throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme) +
+                         " has no creases");
 }
 
 }  // namespace isowave::tools

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "isowave/error.h"
 #include "subdivision/meshes/hierarchy.h"
 #include "tools/command.h"
 
@@ -19,5 +20,17 @@ subdivision::PolygonMesh readAndRemark(const std::filesystem::path& path, Consol
 const subdivision::MeshScheme& schemeWanted(const std::string& name);
 std::string_view variantWanted(const subdivision::MeshScheme& scheme, const std::string& name);
 void declareCrease(OptionList& options, std::optional<double>& angle);  // degrees
+// Throws UsageError for an angle with a scheme that has no creases.
+void refuseCrease(const std::optional<double>& angle, std::string_view scheme);
+
+// get() for an option's value: what it complains of is wrong usage.
+template <class Get>
+auto asked(const std::string& option, const Get& get) -> decltype(get()) {
+    try {
+        return get();
+    } catch (const InputError& error) {
+        throw UsageError(option + ": " + error.what());
+    }
+}
 
 }  // namespace isowave::tools

@@ -12,6 +12,7 @@
 #include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/relief.h"
+#include "tools/subdivision/mesh_options.h"
 
 namespace isowave::tools {
 namespace {
@@ -67,7 +68,8 @@ Relief::Relief()
 }
 
 int Relief::run(Console& console) {
-    if (scheme_) surfaceScheme(*scheme_);  // a wrong name is not the file's fault
+    if (scheme_)
+        asked("--scheme", [&] { return surfaceScheme(*scheme_); });  // a wrong name is not the file's fault
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     openJson();
@@ -81,6 +83,9 @@ int Relief::run(Console& console) {
             throw InputError(input.string(), error.what());
         }
     }();
+    if (report_.layout == ReliefLayout::Quincunx)
+        console.say(fmt::format("quincunx takes {} of {} x {} samples, the largest hexagon in the middle",
+                                report.levels.front().patch, grid.rows, grid.columns));
     writeFiles(out, filesOf(report));
     out.commit();
     tell(console, textOf(report), jsonOf(report));

@@ -61,9 +61,7 @@ DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
     options.variant = variantWanted(scheme, variant_);
     options.levels = depth_;
     options.creaseAngle = creaseAngle_;
-    if (creaseAngle_ && scheme.name != "catmull-clark")
-        throw UsageError("--crease: belongs to --scheme catmull-clark; " + std::string(scheme.name) +
-                         " has no creases");
+    refuseCrease(creaseAngle_, scheme.name);
     return options;
 }
 
