@@ -45,6 +45,8 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
         {"--endian", o.image.raw && raw.type.empty() && raw.headerBytes == 0, true, false, false},
         {"--header-bytes", raw.headerBytes != 0, true, false, false},
         {"--series", o.image.series.has_value(), true, false, false},
+        {"--channel", o.image.channel.has_value(), true, false, false},
+        {"--time", o.image.time.has_value(), true, false, false},
         {"--grid", o.grid.has_value(), false, false, true},
     };
     const char* what = kind == InputKind::image  ? "an image"

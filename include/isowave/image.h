@@ -68,6 +68,10 @@ struct ImageReadOptions {
     std::optional<RawLayout> raw = {};
     // Which series of a DICOM folder: any unique part of its UID or of its description.
     std::optional<std::string> series = {};
+    // Which channel of a TIFF of several, from 1 on.
+    std::optional<std::int64_t> channel = {};
+    // Which of several volumes that lie at one place (times, echoes), from 1 on.
+    std::optional<std::int64_t> time = {};
     // Bytes that the voxels may take while reading (stored type and float32 side by side); 0: what the
     // machine has. A header that asks for more is refused before anything is allocated.
     std::int64_t memoryLimit = 0;

@@ -1,5 +1,5 @@
-// One reader is made by name; ITK's factories, which are global and load plugins, are not used. Slices that are PNG are
-// read by io/picture.
+// One reader is made by name; ITK's factories, which are global and load plugins, are not used. TIFF (tiff/) and slices
+// that are PNG are read by io/picture.
 #include "io/image/itk_reader.h"
 
 #include <dlfcn.h>
@@ -7,7 +7,6 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkTIFFImageIO.h>
 
 #include <algorithm>
 #include <cstdarg>
@@ -20,7 +19,7 @@
 #include "io/image/metaimage.h"
 #include "io/image/nifti.h"
 #include "io/image/nrrd.h"
-#include "io/image/tiff.h"
+#include "io/image/tiff/stack.h"
 #include "io/picture/png.h"
 #include "isowave/error.h"
 
@@ -166,8 +165,6 @@ itk::ImageIOBase::Pointer readerFor(const fs::path& path) {
         io = itk::MetaImageIO::New();
     else if (kind == FileKind::nifti)
         io = itk::NiftiImageIO::New();
-    else if (kind == FileKind::tiff)
-        io = itk::TIFFImageIO::New();
     else
         io = itk::NrrdImageIO::New();
     io->SetFileName(path.string());
@@ -205,18 +202,16 @@ HeaderFacts factsOf(const fs::path& path, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return checkNrrd(path);
     if (dynamic_cast<const itk::MetaImageIO*>(&io)) return checkMetaImage(path);
     if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return checkNifti(path);
-    if (dynamic_cast<const itk::TIFFImageIO*>(&io)) checkTiff(path);
     return {};
 }
 
 std::string formatOf(const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NrrdImageIO*>(&io)) return "NRRD";
     if (dynamic_cast<const itk::MetaImageIO*>(&io)) return "MetaImage";
-    if (dynamic_cast<const itk::NiftiImageIO*>(&io)) return "NIfTI";
-    return "TIFF";
+    return "NIfTI";
 }
 
-// TIFF and PNG say at most how large a pixel is; a voxel is taken to be as high as it is wide.
+// PNG and most TIFF slices say at most how large a pixel is; a voxel is taken to be as high as it is wide.
 void assumeHeight(Header& header) {
     header.hasZSpacing = false;
     header.spacing[2] = header.spacing[0];
@@ -229,6 +224,13 @@ bool isPlain(const HeaderFacts& facts, const Header& header) {
     return facts.plain && facts.storedType == header.type && voxels == header.sliceVoxels() * header.size[2];
 }
 
+SourcePtr openTiffVolume(const fs::path& path, const ImageReadOptions& options) {
+    SourcePtr stack = openTiffStack(path, options);
+    if (stack->header.size[2] == 1)
+        throwFlat(path, stack->header.size[0], stack->header.size[1], "; give the folder of its slices");
+    return stack;
+}
+
 }  // namespace
 
 SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) {
@@ -237,6 +239,7 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
         takePngHeader(path, readPngHeader(bytesOf(path), path.string()), flat);
         throwFlat(path, flat.size[0], flat.size[1], "; give the folder of its slices");
     }
+    if (kindOf(path) == FileKind::tiff) return openTiffVolume(path, options);
     const itk::ImageIOBase::Pointer io = readerFor(path);
     auto source = std::make_unique<FileSource>(path, io);
     Header& header = source->header;
@@ -250,9 +253,7 @@ SourcePtr openVolumeFile(const fs::path& path, const ImageReadOptions& options) 
     const std::size_t dimensions = facts.size.empty() ? io->GetNumberOfDimensions() : facts.size.size();
     takeHeader(path, *io, header);
     if (std::min<std::size_t>(dimensions, io->GetNumberOfDimensions()) < 3 && dimensions < 3)
-        throwFlat(path, header.size[0], header.size[1],
-                  header.format == "TIFF" ? "; give the folder of its slices" : "");
-    if (header.format == "TIFF") assumeHeight(header);
+        throwFlat(path, header.size[0], header.size[1], "");
     header.storedType = facts.storedType;
     header.integral = facts.integral;
     header.slope = facts.slope;
@@ -288,27 +289,30 @@ Slice openPngSlice(const fs::path& path) {
     return slice;
 }
 
-Slice openSlice(const fs::path& path) {
+Slice openTiffSlice(const fs::path& path, const ImageReadOptions& options) {
+    const std::shared_ptr<VoxelSource> stack = openTiffStack(path, options);
+    return {"TIFF", stack->header, [stack](void* out) { stack->readNative(0, 1, out); }};
+}
+
+Slice openSlice(const fs::path& path, const ImageReadOptions& options) {
     if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
     if (kindOf(path) == FileKind::png) return openPngSlice(path);
-    const itk::ImageIOBase::Pointer io = readerFor(path);
-    factsOf(path, *io);
-    reading(path, [&] { io->ReadImageInformation(); });
-    Slice slice{formatOf(*io), {}, [io](void* out) { readRegion(*io, 0, 1, out); }};
-    takeHeader(path, *io, slice.header);
-    return slice;
+    return openTiffSlice(path, options);
 }
 
 class SlicesSource : public VoxelSource {
   public:
-    explicit SlicesSource(std::vector<fs::path> slices) : slices_(std::move(slices)) { native = true; }
+    SlicesSource(std::vector<fs::path> slices, const ImageReadOptions& options)
+        : slices_(std::move(slices)), options_(options) {
+        native = true;
+    }
 
     void readNative(std::int64_t z0, std::int64_t z1, void* out) override {
         auto* bytes = static_cast<char*>(out);
         for (std::int64_t z = z0; z < z1; ++z) {
             const fs::path& path = slices_[static_cast<std::size_t>(z)];
             reading(path, [&] {
-                const Slice slice = openSlice(path);
+                const Slice slice = openSlice(path, options_);
                 requireLikeFirst(path, slice.header);
                 slice.read(bytes);
             });
@@ -329,13 +333,14 @@ class SlicesSource : public VoxelSource {
     }
 
     std::vector<fs::path> slices_;
+    ImageReadOptions options_;
 };
 
 }  // namespace
 
 SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& slices,
                          const ImageReadOptions& options) {
-    const Slice first = openSlice(slices.front());
+    const Slice first = openSlice(slices.front(), options);
     if (first.header.size[2] > 1) {  // pages
         if (slices.size() == 1) return openVolumeFile(slices.front(), options);
         throw InputError(folder.string(),
@@ -343,11 +348,11 @@ SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& sl
                                      "of the files",
                                      slices.size()));
     }
-    auto source = std::make_unique<SlicesSource>(slices);
+    auto source = std::make_unique<SlicesSource>(slices, options);
     source->header = first.header;
     source->header.format = first.format + " slices";
     source->header.size[2] = static_cast<std::int64_t>(slices.size());
-    assumeHeight(source->header);
+    if (first.format == "PNG" || !first.header.hasZSpacing) assumeHeight(source->header);
     return source;
 }
 

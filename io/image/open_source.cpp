@@ -83,6 +83,8 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
             name,
             "is of no known image format (NIfTI, NRRD, MetaImage, TIFF, PNG, DICOM); for headerless "
             "voxels give their size and type");
+    if (options.channel && kind != FileKind::tiff)
+        throw InputError(name, "is no TIFF, and only TIFF has channels; leave the channel out");
     return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path, options);
 }
 

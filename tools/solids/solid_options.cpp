@@ -96,6 +96,10 @@ void declareImage(OptionList& options, SolidOptions& solid) {
                   [&](const std::string& v) { raw(solid).headerBytes = integer(v, 0, kHuge); });
     options.value("--series", "ID", "", "DICOM folder with several series: a part of its UID or description",
                   [&](const std::string& v) { solid.image.series = v; });
+    options.value("--channel", "N", "", "TIFF with several channels: which one, from 1 on",
+                  [&](const std::string& v) { solid.image.channel = integer(v, 1, kHuge); });
+    options.value("--time", "N", "", "several volumes at one place (times, echoes): which one, from 1 on",
+                  [&](const std::string& v) { solid.image.time = integer(v, 1, kHuge); });
 }
 
 void declareMaxMemory(OptionList& options, SolidOptions& solid) {
