@@ -389,6 +389,21 @@ TEST_F(VdbFile, OutlivesAChangedByteOfAForeignFile) {
     EXPECT_LT(refused, kTrials);
 }
 
+// OpenVDB believes the places of a root's children; one that is no multiple of 4096 was a crash where the grid was used.
+TEST_F(VdbFile, RefusesANodeBetweenPlacesOfNodes) {
+    const auto sphere =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0f, openvdb::Vec3f(-20), 1.0f);
+    openvdb::io::File((folder / "foreign.vdb").string()).write({sphere});
+    std::string bad = bytesOf(folder / "foreign.vdb");
+    const std::string place("\x00\xf0\xff\xff\x00\xf0\xff\xff\x00\xf0\xff\xff", 12);  // -4096 three times
+    const std::size_t at = bad.find(place);
+    ASSERT_NE(at, std::string::npos);
+    bad[at] = 8;
+    put(folder / "bad.vdb", bad);
+    EXPECT_THAT(refusal(folder / "bad.vdb"),
+                HasSubstr("a node lies at (-4088, -4096, -4096), which is no multiple"));
+}
+
 // The length of the first grid's name, 4 GB: it must not be allocated here or in the child.
 TEST_F(VdbFile, DoesNotBelieveTheLengthOfAName) {
     openvdb::io::File((folder / "foreign.vdb").string()).write({smallSphere()});

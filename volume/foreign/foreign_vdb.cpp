@@ -23,6 +23,30 @@ VdbContent parse(std::istream& file) {
     return {*stream.getGrids(), stream.getMetadata()};
 }
 
+// OpenVDB takes the places of a root's children as they stand in the file, and finds nothing again where one is no
+// multiple of a child's width.
+template <class Tree>
+void requireAligned(const Tree& tree) {
+    constexpr auto kInside = static_cast<openvdb::Int32>(Tree::RootNodeType::ChildNodeType::DIM - 1);
+    const auto require = [](const openvdb::Coord& at) {
+        if ((at.x() & kInside) || (at.y() & kInside) || (at.z() & kInside))
+            throw std::runtime_error(fmt::format("a node lies at ({}, {}, {}), which is no multiple of {}",
+                                                 at.x(), at.y(), at.z(), kInside + 1));
+    };
+    for (auto child = tree.root().cbeginChildOn(); child; ++child) require(child.getCoord());
+    for (auto tile = tree.root().cbeginValueAll(); tile; ++tile) require(tile.getCoord());
+}
+
+// Of the kinds that anybody here looks into.
+void requireAligned(const openvdb::GridPtrVec& grids) {
+    for (const auto& grid : grids) {
+        if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
+            requireAligned(floats->tree());
+        if (const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid))
+            requireAligned(doubles->tree());
+    }
+}
+
 // Statistics would be taken by several threads, which a fork does not have.
 void writePlain(std::ostream& to, const VdbContent& content) {
     openvdb::io::Stream stream(to);
@@ -139,7 +163,9 @@ VdbContent readForeignVdb(const std::string& name, const FileBytes& file) {
             FileStream stream(file);
             std::ofstream to(shared.path(), std::ios::binary);
             to.exceptions(std::ios::failbit | std::ios::badbit);
-            writePlain(to, parse(stream));
+            const VdbContent content = parse(stream);
+            requireAligned(content.grids);
+            writePlain(to, content);
             return std::string();
         });
     };
