@@ -3,7 +3,7 @@
 #   isowave::isowave   the whole library; nothing in it is under the GPL
 #   isowave::gpl       the same with simplify/, CGAL's GPL packages: a program that links it is under GPL-3
 #
-# and find_package(isowave COMPONENTS curves) only isowave::curves, which needs neither OpenVDB nor ITK nor CGAL;
+# and find_package(isowave COMPONENTS curves) only isowave::curves, which needs neither OpenVDB nor GDCM nor CGAL;
 # likewise subdivision and volume. Headers are those of include/isowave, nothing else.
 #
 # Static, each folder's library is installed as it is. With BUILD_SHARED_LIBS there is one libisowave.so (with simplify/

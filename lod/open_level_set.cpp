@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
@@ -30,6 +32,26 @@ void requireFinite(const openvdb::FloatGrid& levelSet, const std::string& name, 
                               "must be finite; {}",
                               levelSet.background(), iso,
                               invert ? "leave --invert out" : "give another --iso, or --invert"));
+}
+
+// Nodes are looked for in every block of 8 voxels of the box, one slab of 2 kB a block at a time, so a box that is nearly empty
+// costs much for nothing. The surface of a box of n x n x n blocks has 6 n^2 leaves: a compact solid is far below both limits.
+void requireCompact(const openvdb::FloatGrid& levelSet, const std::string& name) {
+    const auto box = levelSet.evalActiveVoxelBoundingBox();
+    if (box.empty()) return;
+    std::array<double, 3> blocks{}, size{};
+    for (int a = 0; a < 3; ++a) {
+        size[a] = double(box.max()[a]) - double(box.min()[a]) + 1;
+        blocks[a] = size[a] / 8 + 1;
+    }
+    const auto leaves = static_cast<double>(levelSet.constTree().leafCount());
+    if (blocks[1] * blocks[2] <= 262144 + 16 * leaves &&
+        blocks[0] * blocks[1] * blocks[2] <= 4194304 + 1000 * leaves)
+        return;
+    throw InputError(name,
+                     fmt::format("its {} leaves lie in a box of {:.0f} x {:.0f} x {:.0f} voxels, which is "
+                                 "nearly empty; is it damaged? crop it to the part wanted",
+                                 levelSet.constTree().leafCount(), size[0], size[1], size[2]));
 }
 
 InputReport reportOf(const openvdb::FloatGrid& levelSet, const std::string& name, double iso, bool inverted) {
@@ -63,6 +85,7 @@ Solid::State openLevelSet(openvdb::FloatGrid::Ptr levelSet, const std::string& n
                           const SolidOptions& options, const Progress& progress, StageClock& clock) {
     const double iso = options.iso.value_or(0.0);
     requireFinite(*levelSet, name, iso, options.invert);
+    requireCompact(*levelSet, name);
     if (options.invert) negate(*levelSet);
     const Fitting fitting = fittingOf(options, FitMethod::distance);
     progress.say(fmt::format("{}: level set '{}', iso {:g}, inside is {}, {} fit", name, levelSet->getName(),

@@ -52,6 +52,7 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
         {"--nan", o.image.nan.has_value(), true, false, false},
         {"--series", o.image.series.has_value(), true, false, false},
         {"--stack", o.image.stack.has_value(), true, false, false},
+        {"--channel", o.image.channel.has_value(), true, false, false},
         {"--time", o.image.time.has_value(), true, false, false},
         {"--resample-slices", o.image.resampleSlices, true, false, false},
         {"--grid", o.grid.has_value(), false, false, true},

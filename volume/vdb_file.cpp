@@ -18,7 +18,6 @@
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/Stream.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -34,6 +33,7 @@
 #include "base/file_bytes.h"
 #include "isowave/error.h"
 #include "volume/content_hash.h"
+#include "volume/foreign/vdb_errors.h"
 #include "volume/grid_bytes.h"
 
 namespace isowave {
@@ -47,14 +47,6 @@ constexpr const char* kFileBytes = "isowave:file_bytes";
 constexpr const char* kParts = "isowave:parts";
 
 // ---- reading
-
-// One line whatever a library's message holds.
-std::string oneLine(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
-    if (text.size() > 200) text = text.substr(0, 200) + "...";
-    return text;
-}
 
 // What the first bytes of a file say.
 struct Preamble {
@@ -210,40 +202,6 @@ PartTable tableOf(const std::filesystem::path& path, const FileBytes& file, cons
     return *std::move(table);
 }
 
-// Files of others: OpenVDB's File writes where each grid ends, so that truncation is known before a tree is
-// built. That is more than politeness: a tree whose reading breaks off leaks its unfinished nodes.
-// io::Stream's files lack the ends; there the short read itself is what tells.
-class GridEnds : public openvdb::io::Archive {
-  public:
-    // REQUIRES: exceptions on for short reads.
-    void check(const std::string& name, std::istream& file, std::int64_t length) {
-        file.seekg(0);
-        readHeader(file);
-        setFormatVersion(file);
-        setLibraryVersion(file);
-        if (!inputHasGridOffsets()) return;
-        openvdb::MetaMap().readMeta(file);
-        for (std::int32_t count = readGridCount(file); count > 0; --count) {
-            openvdb::io::GridDescriptor grid;
-            grid.read(file);
-            if (grid.getEndPos() > length)
-                throw InputError(
-                    name, fmt::format("grid '{}' ends at byte {} but the file holds {}; it is truncated",
-                                      oneLine(grid.gridName()), grid.getEndPos(), length));
-            if (grid.getEndPos() < file.tellg())
-                throw InputError(name, fmt::format("grid '{}' ends before it begins; the file is damaged",
-                                                   oneLine(grid.gridName())));
-            grid.seekToEnd(file);
-        }
-    }
-};
-
-VdbContent parse(std::istream& file) {
-    file.seekg(0);
-    openvdb::io::Stream stream(file, /*delayLoad=*/false);
-    return {*stream.getGrids(), stream.getMetadata()};
-}
-
 void removeOwnMarks(openvdb::MetaMap& metadata) {
     metadata.removeMeta(kFileBytes);
     metadata.removeMeta(kParts);
@@ -252,24 +210,6 @@ void removeOwnMarks(openvdb::MetaMap& metadata) {
 FileBytes openVdb(const std::filesystem::path& path) {
     initializeVdb();
     return FileBytes(path, "a .vdb file");
-}
-
-// Runs `work` on the file; whatever OpenVDB and the stream throw becomes an InputError.
-template <class Work>
-auto guarded(const std::string& name, std::int64_t length, const Work& work) {
-    try {
-        return work();
-    } catch (const InputError&) {
-        throw;
-    } catch (const std::ios_base::failure&) {
-        throw InputError(name,
-                         fmt::format("ends too early, after {} bytes; it is truncated or damaged", length));
-    } catch (const std::bad_alloc&) {
-        throw InputError(name,
-                         "asks for more memory than there is; it is damaged or too large for this machine");
-    } catch (const std::exception& e) {
-        throw InputError(name, "is damaged or of an unknown kind: " + oneLine(e.what()));
-    }
 }
 
 }  // namespace
@@ -346,14 +286,12 @@ VdbContent readOwn(const std::filesystem::path& path, const FileBytes& file, con
 VdbContent readVdb(const std::filesystem::path& path) {
     const FileBytes file = openVdb(path);
     const Preamble preamble = readPreamble(path.string(), file);
-    return guarded(path.string(), file.size(), [&] {
+    return vdbGuarded(path.string(), file.size(), [&] {
         VdbContent content;
         if (preamble.ours()) {
             content = readOwn(path, file, preamble);
         } else {
-            FileStream stream(file);
-            GridEnds().check(path.string(), stream, file.size());
-            content = parse(stream);
+            content = readForeignVdb(path.string(), file);
         }
         removeOwnMarks(*content.metadata);
         return content;
@@ -379,7 +317,7 @@ VdbParts::VdbParts(const std::filesystem::path& path) : state_(std::make_unique<
         s.bytesRead = preamble.length;
         return;
     }
-    guarded(path.string(), preamble.length, [&] {
+    vdbGuarded(path.string(), preamble.length, [&] {
         const PartTable table = tableOf(path, s.file, preamble);
         FileStream stream(s.file);
         s.metadata = GridReader().readMetadata(stream);
@@ -417,7 +355,7 @@ std::vector<openvdb::GridBase::Ptr> VdbParts::read(const std::vector<std::string
         asked.push_back(i);
         s.bytesRead += at->second.end - at->second.begin;
     }
-    const auto grids = guarded(s.path.string(), s.file.size(), [&] { return readParts(s.file, parts); });
+    const auto grids = vdbGuarded(s.path.string(), s.file.size(), [&] { return readParts(s.file, parts); });
     for (std::size_t p = 0; p < parts.size(); ++p) {
         if (!grids[p])
             throw InputError(

@@ -17,15 +17,12 @@
 #include <vector>
 
 #include "volume/field.h"
+#include "volume/foreign/foreign_vdb.h"
 
 namespace isowave {
 
-struct VdbContent {
-    openvdb::GridPtrVec grids;
-    openvdb::MetaMap::Ptr metadata;
-};
-
-// Reads everything. Throws InputError: missing, empty, a folder, not a .vdb, truncated, damaged.
+// Reads everything; what another program wrote, in a child process (volume/foreign/foreign_vdb.h). Throws InputError:
+// missing, empty, a folder, not a .vdb, truncated, damaged.
 VdbContent readVdb(const std::filesystem::path& path);
 
 // The grids of a file, read one by one as they are asked for. A file that writeVdb() wrote has a hash of each

@@ -1,7 +1,6 @@
 #include "wavelets/pyramid_file.h"
 
 #include <fmt/format.h>
-#include <openvdb/io/File.h>
 
 #include <cmath>
 #include <map>
@@ -156,13 +155,8 @@ Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int6
 bool isPyramidFile(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path)) return false;
     try {
-        initializeVdb();
-        openvdb::io::File file(path.string());
-        file.open(/*delayLoad=*/true);
-        const auto meta = file.getMetadata();
-        const auto format = meta ? meta->getMetadata<openvdb::StringMetadata>(kFormat) : nullptr;
-        return format && format->value() == kPyramid;
-    } catch (const std::exception&) {
+        return vdbStringMetadatum(FileBytes(path, "a .vdb file"), kFormat) == kPyramid;
+    } catch (const InputError&) {
         return false;
     }
 }

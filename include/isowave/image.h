@@ -1,4 +1,4 @@
-// Images: voxels with spacing, orientation and origin. No ITK type appears here.
+// Images: voxels with spacing, orientation and origin.
 //
 //   Image head = readImage("cranium.nhdr");                        // NIfTI, NRRD, MetaImage, TIFF, DICOM
 //   Image scan = readImage("dicom/", {.series = "1.2.840"});       // a folder of slices
@@ -76,7 +76,9 @@ struct ImageReadOptions {
     // Which stack of a DICOM folder or file, from 1 on, as the message about several lists them: frames of one series,
     // size, orientation and spacing. Of a segmentation: its how-manieth segment, alone.
     std::optional<std::int64_t> stack = {};
-    // Which of several volumes that lie at one place (times, echoes), from 1 on.
+    // Which channel of a TIFF of several, from 1 on.
+    std::optional<std::int64_t> channel = {};
+    // Which of several volumes that lie at one place (times, echoes) in DICOM or TIFF, from 1 on.
     std::optional<std::int64_t> time = {};
     // DICOM slices in uneven steps along a line are interpolated, linearly, to even ones; without it they are refused.
     bool resampleSlices = false;

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "io/image/dicom/data_set.h"
 #include "io/image/formats/nifti.h"
+#include "io/picture/tiff.h"
 
 namespace isowave::imageio {
 namespace fs = std::filesystem;
@@ -19,8 +20,7 @@ FileKind kindByContent(const fs::path& path) {
     if (text.compare(128, 4, "DICM") == 0) return FileKind::dicom;
     if (text.compare(0, 4, "NRRD") == 0) return FileKind::nrrd;
     if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return FileKind::png;
-    if (text.compare(0, 4, std::string("II*\0", 4)) == 0 || text.compare(0, 4, std::string("MM\0*", 4)) == 0)
-        return FileKind::tiff;
+    if (isTiff(text)) return FileKind::tiff;
     for (const char* key : {"ObjectType =", "NDims =", "Comment ="})
         if (text.starts_with(key)) return FileKind::meta;
     if (beginsAsNifti(niftiHeaderOf(path))) return FileKind::nifti;

@@ -15,9 +15,9 @@
 #include "io/image/formats/mgh.h"
 #include "io/image/formats/nifti.h"
 #include "io/image/formats/nrrd.h"
-#include "io/image/itk_reader.h"
 #include "io/image/kind.h"
 #include "io/image/plain.h"
+#include "io/image/slices.h"
 #include "isowave/error.h"
 
 namespace isowave::imageio {
@@ -77,7 +77,7 @@ SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     if (png + tiff == 0)
         throw InputError(folder.string(),
                          foreignText(folder).value_or("is a folder without DICOM, TIFF or PNG slices"));
-    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff]);
+    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
 }
 
 SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
@@ -95,7 +95,7 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
             name, foreignText(path).value_or(
                       "is of no known image format (NIfTI, NRRD, MetaImage, MGH, TIFF, PNG, DICOM); for "
                       "headerless voxels give their size and type"));
-    return kind == FileKind::dicom ? openDicomFile(path, options) : openVolumeFile(path);
+    return kind == FileKind::dicom ? openDicomFile(path, options) : openPictureFile(path, options);
 }
 
 // Lattice points are numbered with 32 bits an axis, with room for a border and for the dilation of I.
@@ -119,7 +119,8 @@ void refuseForeignOptions(const std::string& name, const Header& header, const I
         {"--volume", options.volume.has_value(), {"NIfTI", "NRRD", "MetaImage", "MGH"}},
         {"--series", options.series.has_value(), {"DICOM"}},
         {"--stack", options.stack.has_value(), {"DICOM"}},
-        {"--time", options.time.has_value(), {"DICOM"}},
+        {"--time", options.time.has_value(), {"DICOM", "TIFF"}},
+        {"--channel", options.channel.has_value(), {"TIFF"}},
         {"--resample-slices", options.resampleSlices, {"DICOM"}},
     };
     for (const Choice& choice : choices) {

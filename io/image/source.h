@@ -1,6 +1,5 @@
 // What every image reader returns: a VoxelSource, which is a header and a way to read slices z0 <= z < z1.
-// readImage() walks over the slices and keeps them all; ImageStream keeps a few. No ITK type appears here, so
-// that only itk_reader.cpp includes its headers.
+// readImage() walks over the slices and keeps them all; ImageStream keeps a few.
 #pragma once
 
 #include <array>

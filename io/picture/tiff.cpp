@@ -15,11 +15,11 @@
 namespace isowave {
 namespace {
 
-// ---- libtiff reads from memory and tells its errors to the file that they are about
+// ---- libtiff reads through this, and tells its errors to the file that they are about
 
 struct TiffBytes {
-    std::string_view bytes;
-    std::size_t at = 0;
+    TiffFile::ReadAt readAt;
+    std::uint64_t size = 0, at = 0;
     char error[160] = "";  // the first one
 };
 
@@ -27,20 +27,20 @@ TiffBytes& fileOf(thandle_t handle) { return *static_cast<TiffBytes*>(handle); }
 
 tmsize_t onRead(thandle_t handle, void* to, tmsize_t count) {
     TiffBytes& file = fileOf(handle);
-    const std::size_t left = file.bytes.size() - std::min(file.at, file.bytes.size()),
-                      got = std::min(left, static_cast<std::size_t>(count));
-    std::memcpy(to, file.bytes.data() + (file.bytes.size() - left), got);
+    if (file.at >= file.size || count <= 0) return 0;
+    const auto wanted = std::min(static_cast<std::uint64_t>(count), file.size - file.at);
+    const std::size_t got = file.readAt(file.at, static_cast<char*>(to), static_cast<std::size_t>(wanted));
     file.at += got;
     return static_cast<tmsize_t>(got);
 }
 tmsize_t onWrite(thandle_t, void*, tmsize_t) { return 0; }
 toff_t onSeek(thandle_t handle, toff_t offset, int from) {
     TiffBytes& file = fileOf(handle);
-    file.at = offset + (from == SEEK_CUR ? file.at : from == SEEK_END ? file.bytes.size() : 0);
+    file.at = offset + (from == SEEK_CUR ? file.at : from == SEEK_END ? file.size : 0);
     return file.at;
 }
 int onClose(thandle_t) { return 0; }
-toff_t onSize(thandle_t handle) { return fileOf(handle).bytes.size(); }
+toff_t onSize(thandle_t handle) { return fileOf(handle).size; }
 
 int onError(TIFF*, void* file, const char*, const char* format, va_list arguments) {
     char* error = static_cast<TiffBytes*>(file)->error;
@@ -79,10 +79,10 @@ double mostExpansion(int compression, double width) {
 }
 
 std::optional<ValueType> typeFor(int bits, int format) {
-    if (format == SAMPLEFORMAT_IEEEFP)
-        return bits == 32   ? std::optional(ValueType::float32)
-               : bits == 64 ? std::optional(ValueType::float64)
-                            : std::nullopt;
+    if (format == SAMPLEFORMAT_IEEEFP)  // 16: made 32 when read
+        return bits == 16 || bits == 32 ? std::optional(ValueType::float32)
+               : bits == 64             ? std::optional(ValueType::float64)
+                                        : std::nullopt;
     if (format > SAMPLEFORMAT_VOID) return std::nullopt;
     const bool isSigned = format == SAMPLEFORMAT_INT;
     switch (bits) {
@@ -103,36 +103,69 @@ std::optional<ValueType> typeFor(int bits, int format) {
     }
 }
 
+// IEEE 754 binary16: 1 sign, 5 exponent, 10 fraction bits; every value is one of float32.
+float floatOfHalf(std::uint16_t half) {
+    const int exponent = half >> 10 & 31, fraction = half & 1023;
+    const float sign = half >> 15 ? -1.0f : 1.0f;
+    if (exponent == 31)
+        return fraction ? std::numeric_limits<float>::quiet_NaN()
+                        : sign * std::numeric_limits<float>::infinity();
+    if (exponent == 0) return sign * std::ldexp(static_cast<float>(fraction), -24);
+    return sign * std::ldexp(static_cast<float>(1024 + fraction), exponent - 25);
+}
+
+// One allocation of libtiff's at most; a tag's array in a damaged file asks for any number.
+tmsize_t mostAtOnce(std::uint64_t fileBytes) {
+    constexpr std::uint64_t kAtLeast = std::uint64_t(256) << 20;
+    return static_cast<tmsize_t>(std::max(kAtLeast, 2 * fileBytes));
+}
+
+std::string textOf(const char* text) { return text ? text : ""; }
+
 // A strip or a tile: where it lies, and its decoded size.
 struct Block {
     std::size_t left = 0, top = 0, width = 0, height = 0, rowBytes = 0;
     std::size_t plane = 0;
 };
 
-class TiffReader {
+}  // namespace
+
+class TiffFile::Reader {
   public:
-    TiffReader(std::string_view bytes, const std::string& name)
-        : name_(name), file_{bytes}, tiff_(open(), TIFFClose) {
+    Reader(ReadAt readAt, std::uint64_t size, const std::string& name)
+        : name_(name), file_{std::move(readAt), size}, tiff_(open(), TIFFClose) {
         if (!tiff_) giveUp();
+        findPages();
     }
 
-    Picture picture() {
+    const std::vector<TiffPage>& pages() const { return pages_; }
+
+    Picture picture(std::size_t page, Samples samples) {
+        if (!TIFFSetSubDirectory(tiff_.get(), pages_[page].directory)) giveUp();
+        isStored_ = samples == Samples::stored;
         Picture picture;
-        picture.pages = countPages();
-        picture.width = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));
-        picture.height = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGELENGTH));
-        picture.bits = tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE);
-        samples_ = tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
-        photometric_ = tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        picture.pages = static_cast<int>(std::max<std::ptrdiff_t>(
+            1,
+            std::count_if(pages_.begin(), pages_.end(), [](const TiffPage& p) { return !p.isThumbnail; })));
+        picture.width = pages_[page].width;
+        picture.height = pages_[page].height;
+        picture.bits = pages_[page].bits;
+        samples_ = pages_[page].samples;
+        photometric_ = pages_[page].photometric;
         const auto code = tag<std::uint16_t>(TIFFTAG_COMPRESSION);
         if (!TIFFIsCODECConfigured(code))
             throw InputError(name_,
                              fmt::format("cannot be read as a picture: its compression {} is unknown", code));
-        const auto type = typeFor(picture.bits, tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT));
-        if (!type || !isDirect(picture.bits)) return shown(std::move(picture));
+        const auto type = pages_[page].type;
+        if (!type || !isDirect(picture.bits)) {
+            if (isStored_) throw InputError(name_, "holds no numbers but colours; convert it to grey");
+            return shown(std::move(picture));
+        }
         picture.type = *type;
+        isHalf_ = picture.bits == 16 && picture.type == ValueType::float32;
         takeChannels(picture);
-        allocate(picture, name_, bitsEach(picture), file_.bytes.size(), expansion());
+        // Halves become twice as large.
+        allocate(picture, name_, bitsEach(picture), file_.size, isHalf_ ? 2 * expansion() : expansion());
         readBlocks(picture);
         finish(picture);
         return picture;
@@ -145,6 +178,7 @@ class TiffReader {
         if (!options) return nullptr;
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), onError, &file_);
         TIFFOpenOptionsSetWarningHandlerExtR(options.get(), onWarning, nullptr);
+        TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), mostAtOnce(file_.size));
         // m: not mapped.
         return TIFFClientOpenExt(name_.c_str(), "rm", &file_, onRead, onWrite, onSeek, onClose, onSize,
                                  nullptr, nullptr, options.get());
@@ -165,19 +199,36 @@ class TiffReader {
     bool isSeparate() const { return tag<std::uint16_t>(TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE; }
     int bitsEach(const Picture& picture) const { return picture.bits * samples_; }
 
-    int countPages() {
-        int pages = 0;
+    void findPages() {
         do {
-            const auto kind = tag<std::uint32_t>(TIFFTAG_SUBFILETYPE);
-            pages += (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0;
+            pages_.push_back(pageHere());
         } while (TIFFReadDirectory(tiff_.get()));
-        if (*file_.error || !TIFFSetDirectory(tiff_.get(), 0)) giveUp();
-        return std::max(1, pages);
+        if (*file_.error) giveUp();
+    }
+
+    TiffPage pageHere() {
+        TiffPage page;
+        page.directory = TIFFCurrentDirOffset(tiff_.get());
+        page.width = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));
+        page.height = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGELENGTH));
+        page.bits = tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE);
+        page.samples = tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
+        page.photometric = tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        page.type = typeFor(page.bits, tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT));
+        page.isThumbnail =
+            (tag<std::uint32_t>(TIFFTAG_SUBFILETYPE) & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
+        page.perUnit = {tag<float>(TIFFTAG_XRESOLUTION), tag<float>(TIFFTAG_YRESOLUTION)};
+        page.unit = tag<std::uint16_t>(TIFFTAG_RESOLUTIONUNIT);
+        // Long ones only once: ImageJ and OME write them into the first page.
+        if (pages_.empty()) page.description = textOf(tag<const char*>(TIFFTAG_IMAGEDESCRIPTION));
+        if (tag<std::uint16_t>(TIFFTAG_COMPRESSION) == COMPRESSION_NONE && !TIFFIsTiled(tiff_.get()))
+            page.firstByte = TIFFGetStrileOffset(tiff_.get(), 0);
+        return page;
     }
 
     // Whether samples are grey values, colours or places in a palette as they stand.
     bool isDirect(int bits) const {
-        if (photometric_ == PHOTOMETRIC_PALETTE) return bits <= 8 && samples_ == 1;
+        if (photometric_ == PHOTOMETRIC_PALETTE) return (bits <= 8 || isStored_) && samples_ == 1;
         if (photometric_ == PHOTOMETRIC_RGB) return samples_ >= 3;
         return photometric_ <= PHOTOMETRIC_MINISBLACK && samples_ >= 1;
     }
@@ -210,7 +261,7 @@ class TiffReader {
             block.width * static_cast<std::size_t>(isSeparate() ? picture.bits : bitsEach(picture));
         if (block.width == 0 || block.height == 0 || block.rowBytes * 8 < rowBits ||
             size / block.height < block.rowBytes ||
-            static_cast<double>(size) > static_cast<double>(file_.bytes.size()) * expansion() + 65536)
+            static_cast<double>(size) > static_cast<double>(file_.size) * expansion() + 65536)
             giveUp();
         std::vector<unsigned char> decoded(size);
         const std::uint32_t count = tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
@@ -255,19 +306,27 @@ class TiffReader {
 
     void takeSample(const unsigned char* row, std::size_t k, int bits, std::byte* to) const {
         const auto size = static_cast<std::size_t>(bits);
+        if (isHalf_) {
+            std::uint16_t half;
+            std::memcpy(&half, row + 2 * k, 2);
+            const float value = floatOfHalf(half);
+            std::memcpy(to, &value, sizeof value);
+            return;
+        }
         if (bits >= 8) {
             std::memcpy(to, row + k * size / 8, size / 8);
             return;
         }
         const int most = (1 << bits) - 1, value = row[k * size / 8] >> (8 - size - k * size % 8) & most;
-        *to = static_cast<std::byte>(photometric_ == PHOTOMETRIC_PALETTE ? value : value * 255 / most);
+        const bool asItIs = isStored_ || photometric_ == PHOTOMETRIC_PALETTE;
+        *to = static_cast<std::byte>(asItIs ? value : value * 255 / most);
     }
 
     // ---- samples as they are meant
 
     void finish(Picture& picture) {
-        if (photometric_ == PHOTOMETRIC_PALETTE) putColours(picture);
-        if (photometric_ == PHOTOMETRIC_MINISWHITE) turnOver(picture);
+        if (photometric_ == PHOTOMETRIC_PALETTE && !isStored_) putColours(picture);
+        if (photometric_ == PHOTOMETRIC_MINISWHITE && !isStored_) turnOver(picture);
         if (isMultiplied_) divide(picture);
         turn(picture, tag<std::uint16_t>(TIFFTAG_ORIENTATION));
     }
@@ -337,7 +396,7 @@ class TiffReader {
         picture.isColour = true;
         picture.channels = 3;
         // Chroma may be coarser.
-        allocate(picture, name_, bits, file_.bytes.size(), 3 * expansion());
+        allocate(picture, name_, bits, file_.size, 3 * expansion());
         std::vector<std::uint32_t> raster(picture.samples.size() / 3);
         if (!TIFFReadRGBAImageOriented(tiff_.get(), static_cast<std::uint32_t>(picture.width),
                                        static_cast<std::uint32_t>(picture.height), raster.data(),
@@ -348,14 +407,15 @@ class TiffReader {
         return picture;
     }
 
-    const std::string& name_;
+    std::string name_;
     TiffBytes file_;
     TiffPtr tiff_;
+    std::vector<TiffPage> pages_;
+    // Of the page that is being read.
     int samples_ = 1, photometric_ = 0;
+    bool isStored_ = false, isHalf_ = false;
     bool isMultiplied_ = false;  // with opacity
 };
-
-}  // namespace
 
 bool isTiff(std::string_view bytes) {
     const std::string_view start = bytes.substr(0, 4);
@@ -365,7 +425,19 @@ bool isTiff(std::string_view bytes) {
 
 Picture readTiff(std::string_view bytes, const std::string& name) {
     if (!isTiff(bytes)) throw InputError(name, "is no TIFF");
-    return TiffReader(bytes, name).picture();
+    const auto readAt = [bytes](std::uint64_t at, char* to, std::size_t count) {
+        std::memcpy(to, bytes.data() + at, count);
+        return count;
+    };
+    return TiffFile(readAt, bytes.size(), name).picture(0, TiffFile::Samples::shown);
 }
+
+TiffFile::TiffFile(ReadAt readAt, std::uint64_t size, const std::string& name)
+    : reader_(std::make_unique<Reader>(std::move(readAt), size, name)) {}
+TiffFile::~TiffFile() = default;
+TiffFile::TiffFile(TiffFile&&) noexcept = default;
+TiffFile& TiffFile::operator=(TiffFile&&) noexcept = default;
+const std::vector<TiffPage>& TiffFile::pages() const { return reader_->pages(); }
+Picture TiffFile::picture(std::size_t page, Samples samples) { return reader_->picture(page, samples); }
 
 }  // namespace isowave

@@ -2,15 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace isowave::subdivision {
 
 namespace {
 
-// Columns of P, cut to a window, are dependent exactly or clearly not; this is a ratio of squared lengths.
+// Two ways to the row, both by columns of P that are taken one after the other, the one farthest from the span of those
+// taken first. A column within t of that span counts as dependent, and its equation is then wrong by up to t |x|.
+// Cholesky of P'P is quick, but knows t^2 only, to (rounding) x (nodes), 1e-14: t cannot be less than 1e-6. That does
+// for most windows. Butterfly's own singular values come down to 1e-7 where many valences differ (real parts have
+// such windows), and with t = 1e-6 equations were wrong by 1e-9 to 4e-7.
+constexpr double kDependentSquare = 1e-12;
+// Gram-Schmidt on P knows t to 1e-16 x nodes (up to a few hundred): ten times that.
 constexpr double kDependent = 1e-12;
-// What is left of an equation that has a solution is rounding (seen 1e-15), of one that has none of size 1.
-constexpr double kSolved = 1e-9;
+// A0's row is in the window wherever it is used, so |x| <= its norm, below 10: solved equations are off by less than this,
+// and those without a solution by a number of size 1.
+constexpr double kSolved = 1e-11;
+
+double square(double x) { return x * x; }
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+void addMultiple(std::vector<double>& a, double factor, const std::vector<double>& b) {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] += factor * b[k];
+}
+
+void scale(std::vector<double>& a, double factor) {
+    for (double& x : a) x *= factor;
+}
 
 }  // namespace
 
@@ -20,6 +42,8 @@ const std::vector<double>& LeastNormRows::weights(const std::vector<Index>& wind
     if (isNew) {
         factorise();
         entry->second = shortest();
+        if (!isSolved(entry->second)) entry->second = shortestByDirections();
+        if (!isSolved(entry->second)) entry->second.clear();
     }
     return entry->second;
 }
@@ -54,7 +78,7 @@ void LeastNormRows::factorise() {
         }
     }
     for (std::size_t c = 0; c < m; ++c) rest[c] = gram[c * m + c];
-    const double least = kDependent * *std::max_element(rest.begin(), rest.end());
+    const double least = kDependentSquare * *std::max_element(rest.begin(), rest.end());
     chosen_.clear();
     directions_.clear();
     while (chosen_.size() < m) {
@@ -93,22 +117,62 @@ std::vector<double> LeastNormRows::solve(const std::vector<double>& r) const {
     return y;
 }
 
-// Corrected once by what is left of the equations, whose condition P'P squares. Where something is left after that,
-// v's column depends on others: no row.
+// Corrected once by what is left of the equations, whose condition P'P squares.
 std::vector<double> LeastNormRows::shortest() const {
-    std::vector<double> x(p_.size(), 0.0), r(touched_.size(), 0.0);
-    r[0] = 1;
+    std::vector<double> x(p_.size(), 0.0);
     for (int pass = 0; pass < 2; ++pass) {
-        const auto y = solve(r);
+        const auto y = solve(leftOf(x));
         for (std::size_t k = 0; k < p_.size(); ++k) {
-            double change = 0;
-            for (const auto& [coarse, weight] : p_[k]) change += weight * y[coarse];
-            x[k] += change;
-            for (const auto& [coarse, weight] : p_[k]) r[coarse] -= weight * change;
+            for (const auto& [coarse, weight] : p_[k]) x[k] += weight * y[coarse];
         }
     }
-    const bool exists = std::all_of(r.begin(), r.end(), [](double left) { return std::abs(left) < kSolved; });
-    return exists ? x : std::vector<double>{};
+    return x;
+}
+
+// The same on P instead of P'P. A direction q is what is new in a column, of length 1. It is orthogonal to the columns
+// taken before, so a step along q leaves their equations as they are; x takes the one that solves the column's own.
+// q is made orthogonal to the others twice, for rounding (twice is enough: Parlett, "The symmetric eigenvalue
+// problem", 6.9).
+std::vector<double> LeastNormRows::shortestByDirections() const {
+    const std::size_t nodes = p_.size(), m = touched_.size();
+    std::vector<std::vector<double>> column(m, std::vector<double>(nodes, 0.0)), directions;
+    for (std::size_t k = 0; k < nodes; ++k) {
+        for (const auto& [coarse, weight] : p_[k]) column[coarse][k] += weight;
+    }
+    auto rest = column;
+    std::vector<double> x(nodes, 0.0);
+    double least = 0;
+    while (directions.size() < m) {
+        const auto far = std::max_element(rest.begin(), rest.end(),
+                                          [](const auto& a, const auto& b) { return dot(a, a) < dot(b, b); });
+        const auto c = static_cast<std::size_t>(far - rest.begin());
+        if (directions.empty()) least = square(kDependent) * dot(*far, *far);
+        if (dot(*far, *far) <= least) break;
+        auto q = *far;
+        for (const auto& before : directions) addMultiple(q, -dot(before, q), before);
+        scale(q, 1 / std::sqrt(dot(q, q)));
+        for (auto& other : rest) addMultiple(other, -dot(q, other), q);
+        std::fill(far->begin(), far->end(), 0.0);  // taken
+        addMultiple(x, ((c == 0 ? 1 : 0) - dot(column[c], x)) / dot(column[c], q), q);
+        directions.push_back(std::move(q));
+    }
+    return x;
+}
+
+// (1 at v, 0 else) - P'x
+std::vector<double> LeastNormRows::leftOf(const std::vector<double>& x) const {
+    std::vector<double> left(touched_.size(), 0.0);
+    left[0] = 1;
+    for (std::size_t k = 0; k < p_.size(); ++k) {
+        for (const auto& [coarse, weight] : p_[k]) left[coarse] -= weight * x[k];
+    }
+    return left;
+}
+
+// Not where v's column depends on the others: there is no row.
+bool LeastNormRows::isSolved(const std::vector<double>& x) const {
+    const auto left = leftOf(x);
+    return std::all_of(left.begin(), left.end(), [](double l) { return std::abs(l) < kSolved; });
 }
 
 }  // namespace isowave::subdivision

@@ -35,6 +35,9 @@ class LeastNormRows {
     void factorise();
     std::vector<double> solve(const std::vector<double>& r) const;
     std::vector<double> shortest() const;
+    std::vector<double> shortestByDirections() const;
+    std::vector<double> leftOf(const std::vector<double>& x) const;
+    bool isSolved(const std::vector<double>& x) const;
 
     RowOfP rowOfP_;
     // Of the present window: P, its coarse vertices numbered as they come; all of that in one vector.

@@ -281,12 +281,13 @@ const TriangleStep::Irregular& TriangleStep::irregular() const {
         LeastNormRows solver([&](Index fine, Taps& row) { rowOfP(fine, row); });
         for (Index v = 0; v < coarse_.vertices(); ++v) {
             if (regular[v] || place(v) == Place::Corner) continue;
-            // A0's row lies in it, so there is one.
             const auto window = place(v) == Place::Boundary ? boundaryWindow(v) : ballWindow(v);
             const auto& weights = solver.weights(window);
             result->rowOf[v] = static_cast<Index>(result->rows.size());
             Taps& row = result->rows.emplace_back();
-            for (std::size_t k = 0; k < window.size(); ++k) row.push_back({window[k], weights[k]});
+            // A0's row lies in the window, so there is one; a window too hard for doubles keeps A0's.
+            if (weights.empty()) rowOfA0(v, row);
+            for (std::size_t k = 0; k < weights.size(); ++k) row.push_back({window[k], weights[k]});
         }
         result->different = solver.solutionCount();
         irregular_ = std::move(result);

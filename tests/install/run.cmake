@@ -47,7 +47,7 @@ run(${WORK}/build/pyramid_table ${WORK}/part.pyramid.vdb)
 # ---- one component, where the packages of the others cannot be found
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/curves_only -B ${WORK}/curves_only -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON
-    -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON)
+    -DCMAKE_DISABLE_FIND_PACKAGE_GDCM=ON -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON)
 run(${CMAKE_COMMAND} --build ${WORK}/curves_only)
 run(${WORK}/curves_only/curves_only ${SOURCE}/tests/data/curves2d/keyring.png)
 

@@ -357,12 +357,79 @@ TEST_F(VdbFile, RefusesTruncationsOfAFileWithoutOffsets) {
     const std::string whole = text.str();
     put(folder / "foreign.vdb", whole);
     ASSERT_EQ(refusal(folder / "foreign.vdb"), "");
-    for (std::size_t length = 0; length < whole.size(); length += 97) {
+    for (std::size_t length = 0; length < whole.size(); length += 397) {
         put(folder / "cut.vdb", whole.substr(0, length));
         ASSERT_NE(refusal(folder / "cut.vdb"), "") << length << " of " << whole.size();
     }
     put(folder / "cut.vdb", whole.substr(0, whole.size() - 1));
     EXPECT_THAT(refusal(folder / "cut.vdb"), HasSubstr("ends too early"));
+}
+
+// What one changed byte does to a file of another program: a message of one line, or grids. Never a crash, and the child
+// that parses may take 512 MB.
+TEST_F(VdbFile, OutlivesAChangedByteOfAForeignFile) {
+    {
+        openvdb::io::File file((folder / "foreign.vdb").string());
+        file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+        file.write({smallSphere()});
+    }
+    const std::string whole = bytesOf(folder / "foreign.vdb");
+    std::mt19937 random(77);
+    int refused = 0;
+    constexpr int kTrials = 120;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        std::string bad = whole;
+        bad[random() % whole.size()] = static_cast<char>(random());
+        put(folder / "bad.vdb", bad);
+        const std::string message = refusal(folder / "bad.vdb");
+        refused += !message.empty();
+        ASSERT_EQ(message.find('\n'), std::string::npos);
+    }
+    EXPECT_GT(refused, kTrials / 20);
+    EXPECT_LT(refused, kTrials);
+}
+
+// OpenVDB believes the places of a root's children; one that is no multiple of 4096 was a crash where the grid was used.
+TEST_F(VdbFile, RefusesANodeBetweenPlacesOfNodes) {
+    const auto sphere =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0f, openvdb::Vec3f(-20), 1.0f);
+    openvdb::io::File((folder / "foreign.vdb").string()).write({sphere});
+    std::string bad = bytesOf(folder / "foreign.vdb");
+    const std::string place("\x00\xf0\xff\xff\x00\xf0\xff\xff\x00\xf0\xff\xff", 12);  // -4096 three times
+    const std::size_t at = bad.find(place);
+    ASSERT_NE(at, std::string::npos);
+    bad[at] = 8;
+    put(folder / "bad.vdb", bad);
+    EXPECT_THAT(refusal(folder / "bad.vdb"),
+                HasSubstr("a node lies at (-4088, -4096, -4096), which is no multiple"));
+}
+
+// The length of the first grid's name, 4 GB: it must not be allocated here or in the child.
+TEST_F(VdbFile, DoesNotBelieveTheLengthOfAName) {
+    openvdb::io::File((folder / "foreign.vdb").string()).write({smallSphere()});
+    std::string bad = bytesOf(folder / "foreign.vdb");
+    const std::size_t at = bad.find("Tree_float_5_4_3") - 4;
+    bad.replace(at, 4, "\xff\xff\xff\xff");
+    put(folder / "bad.vdb", bad);
+    EXPECT_THAT(refusal(folder / "bad.vdb"), HasSubstr("bad.vdb: "));
+}
+
+TEST_F(VdbFile, TellsATextOfItsMetadataWithoutOpenVdb) {
+    openvdb::MetaMap metadata;
+    metadata.insertMeta("number", openvdb::Int64Metadata(7));
+    metadata.insertMeta("word", openvdb::StringMetadata("pyramid"));
+    writeVdb(folder / "a.vdb", {smallSphere()}, metadata);
+    const auto value = [&](const char* name) {
+        return vdbStringMetadatum(FileBytes(folder / "a.vdb", "a .vdb"), name);
+    };
+    EXPECT_EQ(value("word"), "pyramid");
+    EXPECT_EQ(value("number"), std::nullopt);
+    EXPECT_EQ(value("nothing"), std::nullopt);
+    const std::string whole = bytesOf(folder / "a.vdb");
+    for (std::size_t length = 0; length < 400; ++length) {
+        put(folder / "a.vdb", whole.substr(0, length));
+        EXPECT_TRUE(!value("word") || *value("word") == "pyramid") << length;
+    }
 }
 
 TEST_F(VdbFile, RefusesEveryDamagedByte) {

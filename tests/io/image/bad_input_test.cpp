@@ -121,9 +121,11 @@ TEST_F(BadImage, OptionsOfOtherFormats) {
     EXPECT_THAT(says(image, {.series = "1"}),
                 HasSubstr("--series is for DICOM; " + image.string() + " is NRRD"));
     EXPECT_THAT(says(image, {.stack = 1}), HasSubstr("--stack is for DICOM"));
-    EXPECT_THAT(says(image, {.time = 1}), HasSubstr("--time is for DICOM"));
+    EXPECT_THAT(says(image, {.time = 1}), HasSubstr("--time is for DICOM, TIFF"));
+    EXPECT_THAT(says(image, {.channel = 1}), HasSubstr("--channel is for TIFF"));
     EXPECT_THAT(says(image, {.resampleSlices = true}), HasSubstr("--resample-slices is for DICOM"));
     test::writeItk(test::patternImage<unsigned char>({7, 5, 4}).GetPointer(), folder / "a.tif");
+    EXPECT_EQ(says(folder / "a.tif", {.channel = 1, .time = 1}), "");
     EXPECT_THAT(says(folder / "a.tif", {.volume = 1}), HasSubstr("a.tif is TIFF; leave it out"));
 }
 

@@ -258,7 +258,10 @@ TEST(Tiff, NumbersOfEveryTypeStayAsTheyAre) {
     expectTiffOf<std::int64_t>(ValueType::int64, 2);
     expectTiffOf<float>(ValueType::float32, 3);
     expectTiffOf<double>(ValueType::float64, 3);
-    EXPECT_NE(complaint(readTiff, greyTiff(2, 1, 16, 3, "abcd")), "");  // half floats
+    const std::uint16_t halves[] = {0x3c00, 0xc000};
+    const std::string data(reinterpret_cast<const char*>(halves), sizeof halves);
+    EXPECT_THAT(samplesOf<float>(readTiff(greyTiff(2, 1, 16, 3, data), "p")), ElementsAre(1, -2));
+    EXPECT_NE(complaint(readTiff, greyTiff(2, 1, 24, 3, "abcdef")), "");
 }
 
 TEST(Tiff, FewerBitsAreSpreadAndWhiteAsZeroIsTurnedOver) {

@@ -1,5 +1,5 @@
-// TIFF files before ITK's libtiff sees them: whether all that their tables point to lies in the file.
-#include "io/image/tiff.h"
+// TIFF files before libtiff sees them: whether all that their tables point to lies in the file.
+#include "io/image/tiff/tables.h"
 
 #include <fmt/format.h>
 
