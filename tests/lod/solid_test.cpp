@@ -251,7 +251,7 @@ TEST(MeshSolid, KeepsTheHoleOfARing) {
     EXPECT_NEAR(ring.volume, volume, 0.03 * volume);  // the polyhedron is smaller
 }
 
-TEST(MeshSolid, SaysItsOwnVolumeUnlessPartsOverlap) {
+TEST(MeshSolid, SaysItsOwnVolumeAndCountsWhatOverlapsOnce) {
     const TriangleMesh ring = ringMesh();
     const double volume = topologyOf(ring).volume;
     EXPECT_NEAR(open(ring, {.voxels = 32}).input().volume.value(), volume, 1e-9 * volume);
@@ -263,7 +263,13 @@ TEST(MeshSolid, SaysItsOwnVolumeUnlessPartsOverlap) {
     const auto more = static_cast<std::uint32_t>(ring.points.size());
     for (const auto& [a, b, c] : ring.triangles)
         overlapping.triangles.push_back({a + more, b + more, c + more});
-    EXPECT_EQ(open(overlapping, {.voxels = 32}).input().volume, std::nullopt);
+    const InputReport coarse = open(overlapping, {.voxels = 32}).input(),
+                      fine = open(overlapping, {.voxels = 128}).input();
+    EXPECT_GT(coarse.volume.value(), volume);
+    EXPECT_LT(coarse.volume.value(), 1.9 * volume);
+    EXPECT_NEAR(coarse.volume.value(), fine.volume.value(), 2e-3 * volume);
+    EXPECT_EQ(coarse.handles, std::nullopt) << "one solid, with other counts than its parts";
+    EXPECT_EQ(open(ring, {.voxels = 32}).input().handles, 1);
 }
 
 TEST(MeshSolid, TakesTheVoxelSizeOrTheCountOrADefaultThatItNames) {

@@ -99,7 +99,7 @@ TEST(CurveGeoJson, BadPositionsAreNamed) {
     const auto tell = [](const std::string& geometry) {
         return complaint([&] { CurveFile::parse(geometry, ".json", "g.json"); });
     };
-    EXPECT_THAT(tell("{"), HasSubstr("g.json: is not JSON"));
+    EXPECT_THAT(tell("{"), HasSubstr("g.json: ends in line 1 (byte 1), before its brackets are closed"));
     EXPECT_THAT(tell(R"({"type":"LineString","coordinates":[[0,0],[1,"a"]]})"),
                 HasSubstr("/coordinates/1/1: is not a number"));
     EXPECT_THAT(tell(R"({"type":"LineString","coordinates":[[0,0],[1]]})"),

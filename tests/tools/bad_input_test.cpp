@@ -411,9 +411,9 @@ const std::vector<BadInput>& rows() {
          1,
          [](const Folder& f) {
              writeBall(f / "a.nrrd");
-             return lod(f, "a.nrrd", {"--iso", "0", "--json", (f / "nowhere/report.json").string()});
+             return lod(f, "a.nrrd", {"--iso", "0", "--json", (f / "a.nrrd/report.json").string()});
          },
-         {"nowhere/report.json"}},
+         {"a.nrrd"}},
         {"VoxelsOfAnImage",
          2,
          [](const Folder& f) {
