@@ -120,11 +120,15 @@ double volumeInside(const Shape& shape) {
     return static_cast<double>(count) * std::abs(indexToWorld.getMat3().det());
 }
 
-void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {
+bool hasSurface(const BSplineField& field) {
     bool inside = false, outside = false;
     for (auto value = field.shape->cbeginValueOn(); value && !(inside && outside); ++value)
         (*value ? inside : outside) = true;
-    if (!inside || !outside) throw InputError(name, "has no surface at this resolution: " + remedy);
+    return inside && outside;
+}
+
+void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {
+    if (!hasSurface(field)) throw InputError(name, "has no surface at this resolution: " + remedy);
 }
 
 }  // namespace isowave::lod

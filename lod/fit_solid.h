@@ -48,6 +48,9 @@ NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance);
 // Of the lattice points inside, each as large as a voxel of the transform; world units^3.
 double volumeInside(const Shape& shape);
 
+// Whether there are lattice points inside and outside.
+bool hasSurface(const BSplineField& field);
+
 // Throws InputError where the field has only one side. remedy: "the image holds nothing but inside".
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy);
 

@@ -14,6 +14,7 @@
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "volume/distance.h"
 #include "volume/mesh_repair.h"
@@ -176,6 +177,11 @@ bool missesBetween(const Solid::State& solid, const Progress& progress) {
            missed(solid, 2, progress) > 0;
 }
 
+bool isHeldBetween(const Solid::State& solid, const Progress& progress) {
+    return solid.fit->walls && solid.fit->walls->rows > 0 &&
+           !polygonize(*solid.field, {.refine = kFinestRefine}, progress).triangles.empty();
+}
+
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const TriangleMesh& mesh = input.loaded.mesh;
@@ -227,8 +233,10 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         fitAll(plain, nullptr);
         if (missed(plain, kFinestRefine, progress) < missed(solid, kFinestRefine, progress)) solid = plain;
     }
-    requireSurface(*solid.field, name,
-                   "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
+    // A sheet between two layers of lattice points has none inside; the wall fit holds it nevertheless.
+    if (!hasSurface(*solid.field) && !isHeldBetween(solid, progress))
+        requireSurface(*solid.field, name,
+                       "no lattice point lies inside the solid; give more --voxels or a smaller --voxel");
     return solid;
 }
 

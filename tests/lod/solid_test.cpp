@@ -272,6 +272,22 @@ TEST(MeshSolid, SaysItsOwnVolumeAndCountsWhatOverlapsOnce) {
     EXPECT_EQ(open(ring, {.voxels = 32}).input().handles, 1);
 }
 
+TEST(MeshSolid, IsThereWhereNoLatticePointIsInside) {
+    TriangleMesh sheet;
+    for (int i = 0; i < 8; ++i)
+        sheet.points.push_back({i & 1 ? 60.0 : 0.0, i & 2 ? 40.0 : 0.0, i & 4 ? 0.5 : 0.0});
+    sheet.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    const Solid solid = open(sheet, {.voxel = 1.0});
+    EXPECT_EQ(solid.input().parts, 1);
+    const Ladder ladder = makeLadder(solid, {.levels = StepRange{0, 0}});
+    ASSERT_EQ(ladder.levels.size(), 1u);
+    const LevelReport& level = ladder.levels[0].report;
+    EXPECT_EQ(level.topology.parts, 1);
+    EXPECT_EQ(level.topology.genus, 0);
+    EXPECT_NEAR(level.topology.volume, 1200, 0.02 * 1200);
+}
+
 TEST(MeshSolid, TakesTheVoxelSizeOrTheCountOrADefaultThatItNames) {
     const auto spacing = [](const SolidOptions& options, const Progress& progress = {}) {
         return (*open(ringMesh(), options, progress).input().spacing)[0];
