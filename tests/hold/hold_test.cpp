@@ -1,0 +1,146 @@
+// The promises of hold/hold.h.
+#include "hold/hold.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "polygonize/polygonize.h"
+#include "polygonize/topology.h"
+#include "volume/distance_mesh.h"
+#include "volume/fit.h"
+#include "wavelets/direction.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Vec3d;
+
+constexpr int kH = 4;  // the voxel of level 2
+
+// A plate, tilted, off the lattice, of thickness t and 40 wide.
+BSplineField plateOf(double t) {
+    const auto turn = openvdb::math::rotation<openvdb::math::Mat3d>(Vec3d(0.958, -0.287, 0).unit(), 0.3);
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d p = turn * Vec3d(i & 1 ? 20 : -20, i & 2 ? 20 : -20, (i & 4 ? t : -t) / 2) +
+                        Vec3d(40.31, 39.83, 40.23);
+        mesh.points.push_back({p[0], p[1], p[2]});
+    }
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return fitDistance(*distanceFromMesh(mesh, *openvdb::math::Transform::createLinearTransform(1.0), 4));
+}
+
+BSplineField levelOf(BSplineField field, int level) {
+    for (int step = 0; step < 3 * level; ++step) field = wavelets::analyseDirection(field, step % 3).coarse;
+    return field;
+}
+
+struct Levels {
+    BSplineField finest, plain;
+    std::unique_ptr<LevelHold> hold;
+
+    explicit Levels(double thickness, int level = 2)
+        : finest(plateOf(thickness)), plain(levelOf(finest, level)) {
+        const TriangleMesh mesh = polygonize(finest, {.refine = 2});
+        hold = std::make_unique<LevelHold>(surfaceOf(mesh, finest.transform(), 2), finest);
+    }
+    BSplineField held(int refine, HoldReport* report = nullptr) const {
+        BSplineField field = plain;
+        field.controlPoints = plain.controlPoints->deepCopy();
+        const HoldReport made = hold->apply(field, refine);
+        if (report) *report = made;
+        return field;
+    }
+};
+
+std::vector<float> valuesOf(const BSplineField& field) {
+    std::vector<float> values;
+    for (auto voxel = field.controlPoints->cbeginValueOn(); voxel; ++voxel) values.push_back(*voxel);
+    return values;
+}
+
+double volumeOf(const BSplineField& field, int refine) {
+    return topologyOf(polygonize(field, {.refine = refine})).volume;
+}
+
+TEST(LevelHold, EverySampleIsInsideAndEveryHardRowIsMet) {
+    for (const double share : {0.25, 0.375, 0.5, 0.75}) {
+        const Levels levels(share * kH);
+        HoldReport report;
+        const BSplineField held = levels.held(4, &report);
+        ASSERT_GT(report.samples, 100) << share;
+        EXPECT_EQ(report.insideBefore < report.samples, share < 0.6) << share;
+        EXPECT_EQ(report.inside, report.samples) << share;
+        EXPECT_EQ(report.unmet, 0) << share;
+        const MeshTopology mesh = topologyOf(polygonize(held, {.refine = 4}));
+        EXPECT_EQ(mesh.parts, 1) << share;
+        EXPECT_EQ(mesh.genus, 0) << share;
+        // Counted once more, by evaluate(): samples are in level 0's index space, points of level 2 lie at i/4.
+        std::int64_t outside = 0, thin = 0;
+        for (const ThinSample& sample : levels.hold->samples()) {
+            if (sample.thickness >= 1.2 * share * kH) continue;
+            ++thin;
+            const Vec3d world = levels.finest.transform().indexToWorld(Vec3d(sample.at));
+            outside += evaluate(held, held.transform().worldToIndex(world)) >= 0;
+        }
+        EXPECT_GT(thin, 100) << share;
+        EXPECT_EQ(outside, 0) << share;
+    }
+}
+
+TEST(LevelHold, TheCorrectionVanishesAsWallsGetThicker) {
+    constexpr double kH3 = 8;
+    double before = HUGE_VAL;
+    for (const double share : {0.125, 0.25, 0.5, 1.0, 2.0}) {  // of H
+        const Levels levels(share * kH3, 3);
+        HoldReport report;
+        const BSplineField held = levels.held(4, &report);
+        const MeshTopology mesh = topologyOf(polygonize(held, {.refine = 4}));
+        EXPECT_EQ(mesh.parts, 1) << share;
+        EXPECT_EQ(mesh.genus, 0) << share;
+        const double swells = mesh.volume / volumeOf(levels.finest, 2) - 1;
+        EXPECT_LT(swells, before + 0.02) << share;
+        before = std::max(swells, 0.0);
+        if (share < 0.2) {
+            EXPECT_GT(report.thickened, report.samples / 2);
+        }
+        if (share >= 0.5) {
+            EXPECT_LT(std::abs(swells), share < 1 ? 0.15 : 0.05) << share;
+            EXPECT_EQ(report.thickened, 0) << share;
+        }
+        EXPECT_EQ(report.changed > 0, share < 2) << share;
+    }
+}
+
+TEST(LevelHold, WhatIsThickKeepsItsBits) {
+    const Levels levels(2 * kH);
+    HoldReport report;
+    EXPECT_EQ(valuesOf(levels.held(1, &report)), valuesOf(levels.plain));
+    EXPECT_EQ(report.samples, 0);
+}
+
+TEST(LevelHold, TheLevelsGivenStayAsTheyAre) {
+    const Levels levels(0.5 * kH);
+    const std::vector<float> finest = valuesOf(levels.finest), plain = valuesOf(levels.plain);
+    EXPECT_NE(valuesOf(levels.held(4)), plain);
+    EXPECT_EQ(valuesOf(levels.finest), finest);
+    EXPECT_EQ(valuesOf(levels.plain), plain);
+}
+
+TEST(LevelHold, GivesTheSameBitsForAnyThreads) {
+    const Levels levels(0.5 * kH);
+    std::vector<std::vector<float>> results;
+    for (const std::size_t threads : {1, 4}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        results.push_back(valuesOf(levels.held(4)));
+    }
+    EXPECT_EQ(results[0], results[1]);
+}
+
+}  // namespace
+}  // namespace isowave
