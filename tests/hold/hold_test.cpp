@@ -110,7 +110,7 @@ TEST(LevelHold, TheCorrectionVanishesAsWallsGetThicker) {
             EXPECT_GT(report.thickened, report.samples / 2);
         }
         if (share >= 0.5) {
-            EXPECT_LT(std::abs(swells), share < 1 ? 0.15 : 0.05) << share;
+            EXPECT_LT(std::abs(swells), share < 1 ? 0.15 : 0.08) << share;  // coarse levels round off rims
             EXPECT_EQ(report.thickened, 0) << share;
         }
         EXPECT_EQ(report.changed > 0, share < 2) << share;
