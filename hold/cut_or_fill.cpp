@@ -66,18 +66,13 @@ constexpr std::size_t kSpare = 16;
 class Limiter {
   public:
     Limiter(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-            const EditEffort& effort, const Progress& progress)
-        : field_(field),
-          refine_(refine),
-          limits_(limits),
-          smallest_(smallestPart),
-          effort_(effort),
-          progress_(progress) {}
+            const Progress& progress)
+        : field_(field), refine_(refine), limits_(limits), smallest_(smallestPart), progress_(progress) {}
 
     TopologyEdits run() {
         result_.before = result_.after = count(field_);
         bool goesOn = !limits_.allow(result_.after);
-        for (int rounds = 0; goesOn && rounds < effort_.rounds; ++rounds) {
+        while (goesOn) {
             progress_("limiting the topology", 0);
             goesOn = round() && !limits_.allow(result_.after);
         }
@@ -105,7 +100,6 @@ class Limiter {
                                                 progress_);
             for (const What what : kOrder)
                 if (tooMany(what) > 0 && roundOf(what, candidates)) return true;
-            if (!effort_.deep) return false;
         }
         return false;
     }
@@ -272,7 +266,6 @@ class Limiter {
     int refine_;
     SolidLimits limits_;
     double smallest_;
-    EditEffort effort_;
     const Progress& progress_;
     std::set<OptionKey> useless_;  // on the whole mesh or on its surroundings alone
     struct Known {
@@ -287,8 +280,8 @@ class Limiter {
 }  // namespace
 
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                            const EditEffort& effort, const Progress& progress) {
-    return Limiter(field, refine, limits, smallestPart, effort, progress).run();
+                            const Progress& progress) {
+    return Limiter(field, refine, limits, smallestPart, progress).run();
 }
 
 }  // namespace isowave

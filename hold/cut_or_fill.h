@@ -8,7 +8,6 @@
 // candidates do not share places, and each choice is measured on the mesh instead of on cells.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,12 +22,6 @@ struct TopologyEdits {
     SolidCounts before, after;        // of the mesh, without specks
     bool met = true;                  // after is within the limits
     std::string why;                  // where it is not: what is left over, and what was tried
-};
-
-// How long to go on. Unlimited takes minutes where a fine lattice and many superfluous things come together.
-struct EditEffort {
-    int rounds = std::numeric_limits<int>::max();  // that change something
-    bool deep = true;  // also look where the field is cut off, which takes several times as long
 };
 
 // Changes control points of `field` so that polygonize(field, {.refine = refine}), less components smaller than
@@ -46,6 +39,6 @@ struct EditEffort {
 // REQUIRES: refine is 1, 2 or 4. Throws as polygonize(), Cancelled (the field is then as it was before or
 // between two edits).
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                            const EditEffort& effort = {}, const Progress& progress = {});
+                            const Progress& progress = {});
 
 }  // namespace isowave

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hold/cut_or_fill.h"
+
 namespace isowave {
 namespace {
 
@@ -33,9 +35,9 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 }
 
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                const EditEffort& effort, LevelReport& report, const Progress& progress) {
+                LevelReport& report, const Progress& progress) {
     if (!limits.any()) return;
-    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, effort, progress);
+    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, progress);
     for (const TopologyEdit& edit : edits.edits)
         report.edits.push_back({edit.kind == TopologyEdit::Kind::fill,
                                 featureOf(edit.what),

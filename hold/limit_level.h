@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "hold/cut_or_fill.h"
 #include "hold/solid_limits.h"
 #include "isowave/ladder.h"
 #include "volume/field.h"
@@ -17,6 +16,6 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 // limitTopology() (hold/cut_or_fill.h) at F = 0; puts edits, and what of the limits is missed, into the report. The field is the level's own
 // copy: the pyramid stays as it is. Without limits nothing is counted.
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                const EditEffort& effort, LevelReport& report, const Progress& progress);
+                LevelReport& report, const Progress& progress);
 
 }  // namespace isowave

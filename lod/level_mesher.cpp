@@ -258,7 +258,7 @@ void LevelMesher::limit(LevelMesh& level) {
     }
     {
         const StageClock::Scope scope(clock_, "cut and fill");
-        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), {}, report,
+        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
                    progress_);
     }
     if (!report.edits.empty()) drawAll(level, {});

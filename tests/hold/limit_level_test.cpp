@@ -26,7 +26,7 @@ TEST(LimitLevel, TakesTheLowerOfOptionAndLevelBefore) {
 TEST(LimitLevel, TellsOfItsEdits) {
     BSplineField field = fieldFromDistance(16, torus(5, 3.4));
     LevelReport report;
-    limitLevel(field, 1, {.handles = 0}, 0, {}, report, {});
+    limitLevel(field, 1, {.handles = 0}, 0, report, {});
     ASSERT_EQ(report.edits.size(), 1u);
     EXPECT_TRUE(report.edits[0].fill);
     EXPECT_EQ(report.edits[0].what, SolidFeature::handle);
@@ -37,7 +37,7 @@ TEST(LimitLevel, TellsOfItsEdits) {
 TEST(LimitLevel, SaysWhatIsMissed) {
     BSplineField field = fieldFromDistance(16, torus(8, 3));
     LevelReport report;
-    limitLevel(field, 1, {.parts = 0}, 0, {}, report, {});  // the largest part stays
+    limitLevel(field, 1, {.parts = 0}, 0, report, {});  // the largest part stays
     ASSERT_TRUE(report.limitsMissed);
     EXPECT_NE(report.limitsMissed->find("1 parts where 0 are allowed"), std::string::npos);
 }

@@ -94,6 +94,12 @@ TEST(FineSigns, GetCoarserWhereTheyWouldTakeTooMuch) {
     large.addBox({0, 0, 0}, {2000, 2000, 2000});
     EXPECT_EQ(finestSigns(small.points, small.triangles), 4);
     EXPECT_EQ(finestSigns(large.points, large.triangles), 1);
+    Solid apart, wire;  // next to no area, but many lines or a long way
+    apart.addBox({0, 0, 0}, {2, 2, 2});
+    apart.addBox({0, 6000, 6000}, {2, 6002, 6002});
+    wire.addBox({0, 0, 0}, {4e5, 2, 2});
+    EXPECT_EQ(finestSigns(apart.points, apart.triangles), 1);
+    EXPECT_EQ(finestSigns(wire.points, wire.triangles), 2);
 }
 
 TEST(ComponentsTouch, WhereTheyOverlapOrShareAFace) {

@@ -16,8 +16,9 @@ using MaskLeaf = openvdb::MaskTree::LeafNodeType;
 using Accessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree>;
 
 constexpr int kFinest = 4;
-constexpr double kMostCrossings = 64e6;
-constexpr double kReach = 2;  // voxels: a wrong sign is never farther from the mesh
+constexpr double kMostKept = 64e6;       // lines and crossings
+constexpr double kMostAcross = 1 << 20;  // points of the finer lattice
+constexpr double kReach = 2;             // voxels: a wrong sign is never farther from the mesh
 
 std::vector<Vec3d> scaled(std::vector<Vec3d> points, double by) {
     for (Vec3d& p : points) p *= by;
@@ -139,10 +140,16 @@ bool componentsTouch(const std::vector<Vec3d>& points, const std::vector<Triangl
 
 int finestSigns(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles) {
     double twiceArea = 0;
-    for (const Triangle& t : triangles)
+    openvdb::BBoxd box;
+    for (const Triangle& t : triangles) {
         twiceArea += (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).length();
+        for (const auto corner : t) box.expand(points[corner]);
+    }
+    const Vec3d extent = box.extents();
+    const double kept = extent[1] * extent[2] + twiceArea / 2, longest = extent[box.maxExtent()];
     int perVoxel = kFinest;
-    while (perVoxel > 1 && perVoxel * perVoxel * twiceArea / 2 > kMostCrossings) perVoxel /= 2;
+    while (perVoxel > 1 && (perVoxel * perVoxel * kept > kMostKept || perVoxel * longest > kMostAcross))
+        perVoxel /= 2;
     return perVoxel;
 }
 

@@ -48,8 +48,8 @@ class FineSigns {
 bool componentsTouch(const std::vector<openvdb::Vec3d>& points, const std::vector<Triangle>& triangles,
                      const std::vector<std::uint32_t>& of, std::size_t components, const FineSigns& signs);
 
-// The most points a voxel, 4, 2 or 1, that FineSigns takes 256 MB for, by the area of the mesh: it keeps 4 bytes for each of
-// its crossings.
+// The most points a voxel, 4, 2 or 1, that FineSigns takes 256 MB for (it keeps 4 bytes for each line along x and for each
+// crossing, which the area tells) and that LatticeLines has room for; 1 where even that is more.
 int finestSigns(const std::vector<openvdb::Vec3d>& points, const std::vector<Triangle>& triangles);
 
 // Of the points of the finer lattice in the cells that begin at the points of `near`, those where F's sign is the wrong
