@@ -1,8 +1,10 @@
 #include "view/page.h"
 
+#include <cassert>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "isowave/error.h"
 #include "isowave/version.h"
@@ -125,12 +127,16 @@ struct Page::State {
 
 bool canMakePages() { return !embedded::three.empty(); }
 
-Page::Page(PageOptions options) : state_(std::make_unique<State>()) {
+void requirePages() {
     if (!canMakePages())
         throw OperationError(
             "view",
             "this isowave was built where three.js was not installed, and writes no pages; install Debian's "
             "libjs-three (scripts/setup does) and build again");
+}
+
+Page::Page(PageOptions options) : state_(std::make_unique<State>()) {
+    assert(canMakePages());
     state_->options = std::move(options);
 }
 Page::~Page() = default;

@@ -48,10 +48,12 @@ struct PageOptions {
 
 // Whether this build holds three.js; without it there are no pages.
 bool canMakePages();
+// Throws OperationError, one line, unless canMakePages().
+void requirePages();
 
 class Page {
   public:
-    // Throws OperationError, one line, unless canMakePages().
+    // REQUIRES: canMakePages().
     explicit Page(PageOptions options);
     ~Page();
     Page(const Page&) = delete;

@@ -1,5 +1,6 @@
 // isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once.
+#include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -15,6 +16,8 @@
 #include "tools/report/ladder_report.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
+#include "tools/view/level_facts.h"
+#include "tools/view/pages.h"
 
 namespace isowave::tools {
 namespace {
@@ -27,21 +30,37 @@ struct MeshWriter {
     MeshFormat format;
     MeshWriteOptions options;
     OutputFolder& out;
+    std::unique_ptr<view::Page> page;  // of --view
+    Progress progress;
     LadderFiles files;
+    bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
-    void write(const std::string& name, const TriangleMesh& mesh) {
+    template <class Report>
+    void write(const std::string& name, const Report& report, const TriangleMesh& mesh) {
         writeMesh(out.place(name), mesh, format, options);
+        if (!page) return;
+        view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
+        facts.file = name;
+        page->add(std::move(facts), mesh, progress);
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofStep(report.step));
-            write(files.levels.back(), mesh);
+            fromLevel0 = fromLevel0 || report.step == 0;
+            write(files.levels.back(), report, mesh);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), mesh);
+            write(files.budgets.back(), report, mesh);
         };
         return {level, budget, releaseFreedMemory};
+    }
+    void writePage() {
+        if (!page) return;
+        files.view = names.ofPage();
+        AtomicFile file(out.place(files.view));
+        writeWhole(file, page->html());
+        file.commit();
     }
 };
 
@@ -85,12 +104,15 @@ class Lod : public Command {
     void declareLevels();
     void declareBudgets();
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+    // Nothing without --view.
+    std::unique_ptr<view::Page> pageOf(const Solid& solid, const std::string& name) const;
 
     LevelOptions levels_;
     BudgetOptions budgets_;
     SolidOptions solid_;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
+    bool view_ = false;
 };
 
 Lod::Lod()
@@ -115,6 +137,7 @@ Lod::Lod()
     declareLevels();
     declareFormat(options_, format_);
     space_.declare(options_);
+    options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
     declareBudgets();
@@ -161,9 +184,15 @@ void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
     if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
+    if (view_) out.refuseTaken(names.ofPage());
+}
+
+std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& name) const {
+    return view_ ? std::make_unique<view::Page>(pageOptionsOf(solid.input(), name)) : nullptr;
 }
 
 int Lod::run(Console& console) {
+    if (view_) view::requirePages();
     OutputFolder out(*output_, Inputs(arguments));
     const MeshFormat format = format_.value_or(MeshFormat::ply);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
@@ -180,9 +209,16 @@ int Lod::run(Console& console) {
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
         const std::string unit = unitShown(solid);
-        MeshWriter writer{names, format, {space_.of(solid), metresPerUnitOf(solid)}, out, {}};
+        MeshWriter writer{.names = names,
+                          .format = format,
+                          .options = {space_.of(solid), metresPerUnitOf(solid)},
+                          .out = out,
+                          .page = pageOf(solid, out.name()),
+                          .progress = console.progress(),
+                          .files = {}};
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
+        writer.writePage();
         finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {

@@ -31,7 +31,7 @@ class View : public Command {
     int run(Console& console) override {
         if (output_->extension() != ".html" && output_->extension() != ".htm")
             throw UsageError("-o: a page is an .html file; name it for example part.html");
-        if (!view::canMakePages()) view::Page{{}};  // throws, in words
+        view::requirePages();
         OutputFile out(*output_);
         Inputs(arguments).refuse(*output_);
         AtomicFile file(*output_);

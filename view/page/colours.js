@@ -34,14 +34,16 @@ function usualRange(distance) {
     return distance.max;
 }
 
-// Four significant digits, thousands grouped, as the command prints numbers.
-function shortNumber(value) {
+// Four significant digits, or as many as are said; thousands grouped, as the command prints numbers.
+function shortNumber(value, digits = 4) {
     if (value === 0) return "0";
     const size = Math.floor(Math.log10(Math.abs(value)));
     if (size >= 3) return Math.round(value).toLocaleString("en-US");
     if (size < -5) return value.toExponential(2);
-    return String(Number(value.toPrecision(4)));
+    return String(Number(value.toPrecision(digits)));
 }
+
+const shareText = (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Number((100 * Math.abs(value)).toPrecision(3))} %`;
 
 const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 

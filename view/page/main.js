@@ -34,7 +34,7 @@ const shownLevels = () => (state.mode === "single" ? [state.a] : [state.a, state
 
 async function choose(index, second = false) {
     state[second ? "b" : "a"] = Math.min(Math.max(index, 0), page.levels.length - 1);
-    if (second && state.mode === "single") state.mode = "side";
+    if (second && state.mode === "single") keepingFit(() => (state.mode = "side"));
     await refresh();
 }
 
@@ -98,7 +98,7 @@ function putLabels() {
         const label = element("span", {}, element("b", { class: i ? "b" : "a" }, i ? "B" : "A"),
             `${facts.name} · ${grouped(facts.triangles ?? facts.points)} ${page.planar ? "points" : "triangles"}`);
         label.style.left = `${pane.left + pane.width * (panes.length > 1 ? 0.5 : 0.25 + 0.5 * i)}px`;
-        label.style.top = `${pane.top + pane.height - 40 - (panes.length > 1 && pane.width < 420 ? 30 : 0)}px`;
+        label.style.top = `${pane.top + (pane.top > 0 ? 12 : 74)}px`;
         labels.append(label);
     });
     if (panes.length < 2) return;
@@ -110,7 +110,12 @@ function putLabels() {
 
 // ---- who changes it
 
-const setMode = (mode) => ((state.mode = state.mode === mode ? "single" : mode), refresh());
+// A mode that is on goes off. Two levels that are one are no comparison: the second becomes the first of all, or the next.
+function setMode(mode) {
+    keepingFit(() => (state.mode = state.mode === mode ? "single" : mode));
+    if (state.mode !== "single" && state.a === state.b) state.b = state.a > 0 ? 0 : 1;
+    return refresh();
+}
 function toggle(flag) {
     if (flag === "cut") state.cut.on = !state.cut.on;
     else state[flag] = !state[flag];
@@ -134,7 +139,16 @@ function flip() {
     refresh();
 }
 function fit() {
-    stage.fit(orbit, stage.panes(state)[0]);
+    orbit.target = [0, 0, 0];
+    orbit.height = stage.fitHeight(orbit, stage.panes(state)[0]);
+    redraw();
+}
+// Calls `change`, which makes panes of another size, and keeps what was in the picture in it.
+function keepingFit(change) {
+    const height = () => stage.fitHeight(orbit, stage.panes(state)[0]);
+    const before = stage.size ? height() : 0;
+    change();
+    if (before > 0) orbit.height *= height() / before;
     redraw();
 }
 async function save() {
@@ -240,9 +254,8 @@ const shortName = (name) => (name.length > 12 ? name.slice(0, 11) + "…" : name
 function resize() {
     const box = byId("stage").getBoundingClientRect();
     if (box.width < 1 || box.height < 1) return;
-    stage.resize(Math.round(box.width), Math.round(box.height));
+    keepingFit(() => stage.resize(Math.round(box.width), Math.round(box.height)));
     putLabels();
-    redraw();
 }
 
 function putScale() {

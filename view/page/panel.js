@@ -4,18 +4,16 @@
 const SVG = "http://www.w3.org/2000/svg";
 
 function element(name, attributes = {}, ...children) {
-    const drawn = ["svg", "g", "rect", "path", "circle", "line", "polygon", "text", "title"].includes(name);
+    const drawn = ["svg", "g", "rect", "path", "line", "polygon", "text", "title"].includes(name);
     const node = drawn ? document.createElementNS(SVG, name) : document.createElement(name);
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
     node.append(...children);
     return node;
 }
 
-const share = (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${shortNumber(Math.abs(100 * value))} %`;
-
 // key of the facts, head of the column, how a value is written, whether it gets a plot, whether that is logarithmic
 const COLUMNS = [
-    { key: "voxel", head: "voxel", length: true },
+    { key: "voxel", head: "voxel", length: true, digits: 3 },
     { key: "faces", head: "faces" },
     { key: "triangles", head: "triangles", plot: true, log: true },
     { key: "points", head: "points", plot: true, log: true },
@@ -25,16 +23,16 @@ const COLUMNS = [
     { key: "handles", head: "handles", plot: true },
     { key: "cavities", head: "cavities", plot: true },
     { key: "area", head: "area", planar: true },
-    { key: "volumeError", head: "volume", write: share, plot: true, name: "volume error" },
-    { key: "rms", head: "rms", length: true, plot: true, name: "rms to first" },
-    { key: "max", head: "max", length: true },
+    { key: "volumeError", head: "volume", write: shareText, plot: true, name: "volume error" },
+    { key: "rms", head: "rms", length: true, digits: 3, plot: true, name: "rms to first" },
+    { key: "max", head: "max", length: true, digits: 3 },
 ];
 
 function columnsOf(page) {
     return COLUMNS.filter(({ key, planar }) => (!planar || page.planar) && page.levels.some((level) => level.facts[key] !== undefined));
 }
 function written(column, value) {
-    return value === undefined ? "–" : column.write ? column.write(value) : shortNumber(value);
+    return value === undefined ? "–" : column.write ? column.write(value) : shortNumber(value, column.digits);
 }
 
 class Table {
@@ -44,7 +42,7 @@ class Table {
             ...(column.length && page.unit ? [element("small", {}, page.unit)] : []));
         this.rows = page.levels.map((level, index) => {
             const row = element("tr", { tabindex: 0, "data-level": index, title: level.facts.file || level.facts.name },
-                element("th", { scope: "row" }, element("i", { class: "mark" }), level.facts.name),
+                element("th", { scope: "row" }, level.facts.name),
                 ...this.columns.map((column) => element("td", {}, written(column, level.facts[column.key]))));
             row.addEventListener("click", (e) => choose(index, e.shiftKey));
             row.addEventListener("keydown", (e) => e.key === "Enter" && choose(index, e.shiftKey));
@@ -84,8 +82,9 @@ class Plots {
             "aria-label": `${column.name || column.head} over the levels` });
         const path = scaled.map((v, i) => (v === null ? "" : `${i === 0 || scaled[i - 1] === null ? "M" : "L"}${x(i)} ${y(v)}`));
         svg.append(element("line", { x1: 6, x2: width - 6, y1: y(low <= 0 && !column.log ? 0 : low), y2: y(low <= 0 && !column.log ? 0 : low) }),
-            element("path", { d: path.join("") }));
-        const dots = scaled.map((v, i) => element("circle", { cx: x(i), cy: v === null ? -99 : y(v), r: 2.6 }));
+            element("path", { class: "curve", d: path.join("") }));
+        // A line of no length with round ends stays a circle however the plot is stretched.
+        const dots = scaled.map((v, i) => element("path", v === null ? {} : { d: `M${x(i)} ${y(v)}h0` }));
         svg.append(...dots);
         svg.addEventListener("click", (e) => {
             const box = svg.getBoundingClientRect();
@@ -99,10 +98,8 @@ class Plots {
     }
     mark(state) {
         for (const { column, dots, values, value, unit } of this.plots) {
-            dots.forEach((dot, i) => {
-                dot.setAttribute("class", i === state.a ? "a" : state.mode !== "single" && i === state.b ? "b" : "");
-                dot.setAttribute("r", i === state.a ? 4 : 2.6);
-            });
+            dots.forEach((dot, i) => dot.setAttribute("class",
+                `dot ${i === state.a ? "a" : state.mode !== "single" && i === state.b ? "b" : ""}`));
             value.textContent = withUnit(written(column, values[state.a]), values[state.a] === undefined ? "" : unit);
         }
     }
@@ -121,9 +118,10 @@ class Histogram {
     mark(state) {
         const level = this.page.levels[state.a], { distance, facts } = level, first = this.page.levels[0].facts.name;
         this.node.hidden = this.page.levels.length < 2;
-        this.node.querySelector("h2").textContent = `Distance of ${facts.name} to ${first}`;
+        this.node.querySelector("h2").textContent = distance ? `Distance of ${facts.name} to ${first}` : "Distances";
         this.svg.replaceChildren();
         this.node.querySelector(".axis").hidden = !distance;
+        this.svg.style.display = distance ? "" : "none";
         Object.assign(this.node.dataset, { rms: facts.rms ?? "", max: facts.max ?? "" });
         if (!distance) {
             this.caption.textContent = `${facts.name} is what the others are measured against.`;

@@ -107,9 +107,8 @@ class PlaneStage {
             this.context.fillRect(shown.points[i] - side / 2, shown.points[i + 1] - side / 2, side, side);
     }
 
-    fit(orbit, pane) {
-        orbit.target = [0, 0, 0];
+    fitHeight(orbit, pane) {
         const size = this.high.map((x, k) => x - this.low[k]);
-        orbit.height = 1.12 * Math.max(size[1], (size[0] * pane.height) / pane.width);
+        return 1.12 * Math.max(size[1], (size[0] * pane.height) / pane.width);
     }
 }

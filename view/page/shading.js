@@ -37,12 +37,13 @@ void main() {
     if (!(dot(n, facet) > crease)) n = facet;
     vec3 eye = normalize(-vView);
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.75))), 0.0);
-    float fill = max(dot(n, normalize(vec3(0.8, -0.2, 0.4))), 0.0);
+    float fill = max(dot(n, normalize(vec3(0.75, 0.05, 0.65))), 0.0);
     float sky = 0.5 + 0.5 * n.y;
     vec3 base = coloured ? texture2D(colours, vec2(clamp(vDistance / range, 0.002, 0.998), 0.5)).rgb : albedo;
-    vec3 colour = base * (0.24 + 0.12 * sky + 0.66 * key + 0.14 * fill);
+    float light = 0.30 + 0.12 * sky + 0.50 * key + 0.26 * fill;
+    vec3 colour = base * (coloured ? 0.42 + 0.6 * light : light);
     float gloss = pow(max(dot(n, normalize(eye + vec3(-0.45, 0.65, 0.75))), 0.0), 40.0);
-    colour += 0.10 * gloss;
+    colour += coloured ? 0.0 : 0.09 * gloss;
     colour *= 0.86 + 0.14 * smoothstep(0.0, 0.45, dot(n, eye));
     gl_FragColor = vec4(colour, opacity);
 }`;
@@ -78,9 +79,12 @@ function wireMaterial() {
     return new THREE.ShaderMaterial({
         vertexShader: `
 varying vec3 vWorld;
+varying float vFacing;
 void main() {
     vWorld = position;
-    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+    vec4 view = viewMatrix * vec4(position, 1.0);
+    vFacing = dot(normalMatrix * normal, -view.xyz);
+    gl_Position = projectionMatrix * view;
 }`,
         fragmentShader: `
 uniform vec3 albedo;
@@ -88,8 +92,10 @@ uniform float opacity;
 uniform vec4 cut;
 uniform bool cuts;
 varying vec3 vWorld;
+varying float vFacing;
 void main() {
-    if (cuts && dot(cut.xyz, vWorld) > cut.w) discard;
+    // Of a cut solid, edges that face away would be drawn on the section.
+    if (cuts && (dot(cut.xyz, vWorld) > cut.w || vFacing < 0.0)) discard;
     gl_FragColor = vec4(albedo, opacity);
 }`,
         transparent: true,

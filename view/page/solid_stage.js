@@ -54,7 +54,7 @@ class SolidStage {
     wireOf(shown, index) {
         if (shown.wire) return shown.wire;
         const geometry = new THREE.BufferGeometry();
-        geometry.setAttribute("position", shown.surface.geometry.getAttribute("position"));
+        for (const name of ["position", "normal"]) geometry.setAttribute(name, shown.surface.geometry.getAttribute(name));
         const closed = this.levels[index].facts.closed === true;
         geometry.setIndex(new THREE.BufferAttribute(edgesOf(shown.mesh, closed), 1));
         shown.wire = new THREE.LineSegments(geometry, this.roles.a.wire);
@@ -76,8 +76,8 @@ class SolidStage {
     panes(state) {
         const [width, height] = this.size;
         const both = [{ index: state.a, role: "a" }, { index: state.b, role: "b" }];
-        if (state.mode === "overlay") return [{ left: 0, top: 0, width, height, shows: both }];
-        if (state.mode !== "side") return [{ left: 0, top: 0, width, height, shows: [both[0]] }];
+        const over = state.mode === "overlay" && state.a !== state.b;
+        if (state.mode !== "side") return [{ left: 0, top: 0, width, height, shows: over ? both : [both[0]] }];
         const beside = width >= height;
         return both.map((one, i) => ({
             left: beside ? (i * width) / 2 : 0, top: beside ? 0 : (i * height) / 2,
@@ -179,11 +179,11 @@ class SolidStage {
         return Math.max(0, ...[...this.loaded.values()].map((shown) => shown.milliseconds || 0));
     }
 
-    fit(orbit, pane) {
-        orbit.target = [0, 0, 0];
+    // Of the picture that holds all, as it is turned.
+    fitHeight(orbit, pane) {
         const size = this.high.map((x, k) => x - this.low[k]), { right, up } = orbit.axes();
         const extent = (axis) => size.reduce((sum, x, k) => sum + x * Math.abs(axis[k]), 0);
-        orbit.height = 1.18 * Math.max(extent(up), (extent(right) * pane.height) / pane.width, this.radius * 0.2);
+        return 1.18 * Math.max(extent(up), (extent(right) * pane.height) / pane.width, this.radius * 0.2);
     }
     stl(index, title) {
         return stlOf(this.loaded.get(index).mesh, this.centre, title);
