@@ -10,7 +10,8 @@ namespace isowave::view {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint8_t kNew = 0, kBefore = 1, kBehind = 2, kNamed = 3, kThroughBc = 4, kThroughCa = 8;
+constexpr std::uint8_t kNew = 0, kBefore = 1, kBehind = 2, kNamed = 3, kThroughBc = 4, kThroughCa = 8,
+                       kWalkedBc = 16, kWalkedCa = 32;
 
 using Lattice = std::array<std::int32_t, 3>;
 
@@ -93,8 +94,12 @@ class Walk {
 // Turns the walk into the three streams. What it knows while it writes is what a reader knows while it reads.
 class Writer {
   public:
-    Writer(const TriangleMesh& mesh, PackedMesh& packed)
-        : mesh_(mesh), packed_(packed), number_(mesh.points.size(), kNone) {}
+    Writer(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twin, PackedMesh& packed)
+        : mesh_(mesh),
+          twin_(twin),
+          packed_(packed),
+          number_(mesh.points.size(), kNone),
+          written_(mesh.triangles.size(), false) {}
 
     void write(const std::vector<Visit>& visits) {
         for (const Visit& visit : visits) triangle(visit);
@@ -121,16 +126,27 @@ class Writer {
             gate = gates_.back();
             gates_.pop_back();
         }
-        const std::uint8_t kind = corner(gate, t[(k + 2) % 3]);
+        const std::uint32_t bc = nextInTriangle(visit.halfEdge);
+        const Sides walked{isWalked(bc), isWalked(nextInTriangle(bc))};
+        const std::uint8_t kind = corner(gate, t[(k + 2) % 3], walked);
         const std::uint32_t c = number_[t[(k + 2) % 3]];
         setRim(gate, c, kind);
+        written_[visit.halfEdge / 3] = true;
         if (visit.throughCa) gates_.push_back({gate.a, c, gate.b});
         if (visit.throughBc) gates_.push_back({c, gate.b, gate.a});
         kinds_.push_back(static_cast<std::uint8_t>(kind + (visit.throughBc ? kThroughBc : 0) +
                                                    (visit.throughCa ? kThroughCa : 0)));
     }
 
-    std::uint8_t corner(const Gate& gate, std::uint32_t vertex) {
+    // Of the edges b-c and c-a: whether the triangle on the other side has been walked.
+    struct Sides {
+        bool bc, ca;
+    };
+    bool isWalked(std::uint32_t halfEdge) const {
+        return twin_[halfEdge] != kNone && written_[twin_[halfEdge] / 3];
+    }
+
+    std::uint8_t corner(const Gate& gate, std::uint32_t vertex, const Sides& walked) {
         const std::uint32_t c = number_[vertex];
         if (c == kNone) {
             Lattice guess;
@@ -139,16 +155,17 @@ class Writer {
             put(vertex, guess);
             return kNew;
         }
-        if (c == before_[gate.a]) return kBefore;
-        if (c == behind_[gate.b]) return kBehind;
+        if (walked.ca && c == before_[gate.a]) return kBefore;
+        if (walked.bc && c == behind_[gate.b]) return kBehind;
         putVarint(names_, packed_.order.size() - c);
-        return kNamed;
+        return static_cast<std::uint8_t>(kNamed + (walked.bc ? kWalkedBc : 0) + (walked.ca ? kWalkedCa : 0));
     }
 
-    // The rim had a -> b, and has a -> c -> b; of these, what was there already is inside now.
+    // The rim had a -> b, and has a -> c -> b, but for edges whose other side was walked: those are inside now.
     void setRim(const Gate& gate, std::uint32_t c, std::uint8_t kind) {
-        if (kind != kBefore) behind_[gate.a] = c, before_[c] = gate.a;
-        if (kind != kBehind) behind_[c] = gate.b, before_[gate.b] = c;
+        const int which = kind & kNamed;
+        if (which != kBefore && !(kind & kWalkedCa)) behind_[gate.a] = c, before_[c] = gate.a;
+        if (which != kBehind && !(kind & kWalkedBc)) behind_[c] = gate.b, before_[gate.b] = c;
     }
 
     std::uint32_t named(std::uint32_t vertex, const Lattice& guess) {
@@ -185,8 +202,10 @@ class Writer {
     }
 
     const TriangleMesh& mesh_;
+    const std::vector<std::uint32_t>& twin_;
     PackedMesh& packed_;
     std::vector<std::uint32_t> number_;  // of the mesh's vertices, in the order of the walk
+    std::vector<bool> written_;          // of the mesh's triangles
     std::vector<Lattice> lattice_;       // from here on by that number
     std::vector<std::uint32_t> before_, behind_;
     std::vector<Gate> gates_;
@@ -215,7 +234,8 @@ PackedMesh packed(const TriangleMesh& mesh) {
     PackedMesh result;
     if (mesh.triangles.empty()) return result;
     putLattice(mesh, result);
-    Writer(mesh, result).write(Walk(mesh.triangles.size(), twins(mesh)).take());
+    const std::vector<std::uint32_t> twin = twins(mesh);
+    Writer(mesh, twin, result).write(Walk(mesh.triangles.size(), twin).take());
     return result;
 }
 

@@ -6,8 +6,8 @@
 //                   behind: the vertex behind b there;  named: its number follows
 //     exits         whether the walk goes on through b-c (first), and through c-a (kept on a stack)
 // as in Rossignac, "Edgebreaker: connectivity compression for triangle meshes" (1999), whose L and R are `before` and
-// `behind`. Where his rim is exact, ours is a table of neighbours that is wrong after a split, which costs a named vertex and
-// nothing else; so any mesh will do, with handles, borders, and edges of three triangles.
+// `behind`. Where his rim is exact, ours is a table of one neighbour each side of a vertex, which is wrong where the rim meets
+// itself; that costs a named vertex and nothing else. So any mesh will do, with handles, borders, and edges of three triangles.
 // A new vertex is stored as its difference from a + b - d (Touma and Gotsman 1998), on a lattice of 65,536 steps along the
 // longest side of the box around the mesh.
 #pragma once
@@ -23,7 +23,8 @@ namespace isowave::view {
 inline constexpr int kSteps = 65535;  // of the lattice, along the longest side of the box
 
 // The streams, one behind the other in `bytes`:
-//   kinds       a byte a triangle: kind (new 0, before 1, behind 2, named 3) + 4 (through b-c) + 8 (through c-a)
+//   kinds       a byte a triangle: kind (new 0, before 1, behind 2, named 3) + 4 (through b-c) + 8 (through c-a); where c is
+//               named also + 16 and + 32 where the walk has been on the other side of b-c and of c-a
 //   positions   of x, y and z: low bytes, then high bytes, one a vertex, of the zigzagged difference modulo 2^16
 //   names       varints: a and b of a component's first triangle, and each named c: 0 is the next new vertex, k the one that
 //               is k below it

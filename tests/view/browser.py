@@ -56,7 +56,7 @@ def data(driver):
 def settle(driver):
     """Until the level that is chosen is drawn and nothing is about to change."""
     until(lambda: data(driver).get("ready") == "true", "the page is ready")
-    until(lambda: data(driver)["drawn"] == data(driver)["level"] and
+    until(lambda: data(driver).get("drawn") == data(driver)["level"] and
           driver.execute_script("return document.getElementById('busy').hidden && !dirty"), "the picture is drawn")
     time.sleep(0.3)
 

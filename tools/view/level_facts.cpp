@@ -30,6 +30,7 @@ void putTopology(view::LevelFacts& facts, const MeshTopology& topology) {
     facts.handles = topology.genus;
     facts.cavities = topology.cavities;
     facts.volume = topology.volume;
+    facts.area = topology.area;
 }
 
 view::LevelFacts factsOf(const LevelReport& level, const std::string& name, bool toLevel0) {

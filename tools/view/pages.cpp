@@ -108,7 +108,8 @@ PagePointer pageOfCurves(const std::vector<fs::path>& files, const std::string& 
 Json readReport(const fs::path& path) {
     const std::string text = readFile(path, "a report");
     const Json report = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    const bool isOurs = report.is_object() && report.contains("version") && report.contains("input");
+    const bool isOurs = report.is_object() && report.contains("version") && report.contains("input") &&
+                        report["input"].is_object();
     if (!isOurs)
         throw InputError(path.string(),
                          "is no report of isowave lod or isowave curves; give the folder that they wrote");
@@ -152,6 +153,14 @@ view::PageOptions optionsOf(const Json& report, const std::string& title) {
     return options;
 }
 
+// Entries of budgets say components alone.
+void putParts(view::LevelFacts& facts, const TriangleMesh& mesh) {
+    const MeshTopology topology = topologyOf(mesh);
+    if (!topology.closed() || !topology.manifold()) return;
+    facts.parts = topology.parts;
+    facts.cavities = topology.cavities;
+}
+
 PagePointer pageOfReport(const fs::path& path, Console& console) {
     const Json report = readReport(path);
     const bool planar = !report.contains("levels");
@@ -160,17 +169,20 @@ PagePointer pageOfReport(const fs::path& path, Console& console) {
     if (entries.empty()) throw InputError(path.string(), "names no file of a level; nothing to show");
     const std::string title = nameOfFolder(path.parent_path());
     view::PageOptions options = optionsOf(report, title);
-    const bool toLevel0 = entries.front().value("step", -1) == 0 && entries.front().contains("spacing");
+    const bool toLevel0 = factsOf(entries.front(), "", false).step == 0;
     if (extensionOf(placeOf(entries.front(), path)) == ".svg") options.yUp = false;
     auto page = std::make_unique<view::Page>(std::move(options));
     for (const Json& entry : entries) {
         const fs::path file = placeOf(entry, path);
         view::LevelFacts facts = factsOf(entry, levelName(file, title), planar || toLevel0);
         facts.file = file.filename().string();
-        if (planar)
+        if (planar) {
             page->add(facts, readRings(file, console));
-        else
-            page->add(facts, readMeshFile(file, console).mesh, console.progress());
+            continue;
+        }
+        const TriangleMesh mesh = readMeshFile(file, console).mesh;
+        if (!facts.parts) putParts(facts, mesh);
+        page->add(facts, mesh, console.progress());
     }
     return page;
 }

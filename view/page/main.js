@@ -350,7 +350,7 @@ async function start() {
 
 // A first picture of a level that is quickly there.
 async function preview() {
-    const quick = page.levels.findIndex((level) => (level.triangles ?? 0) < 1e5);
+    const quick = page.levels.findIndex((level) => (level.triangles ?? 0) < 2.5e4);
     if (quick <= 0) return;
     mark();
     await stage.load(quick);

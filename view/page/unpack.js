@@ -31,7 +31,7 @@ class Varints {
 }
 
 const KIND = { fresh: 0, before: 1, behind: 2 };
-const THROUGH_BC = 4, THROUGH_CA = 8;
+const THROUGH_BC = 4, THROUGH_CA = 8, WALKED_BC = 16, WALKED_CA = 32;
 
 // -> { lattice: Int32Array (x y z of a vertex), triangles: Uint32Array }
 function unpackedMesh(bytes, vertexCount, triangleCount) {
@@ -77,8 +77,8 @@ function unpackedMesh(bytes, vertexCount, triangleCount) {
         } else if (kind === KIND.before) c = before[a];
         else if (kind === KIND.behind) c = behind[b];
         else c = count - names.next();
-        if (kind !== KIND.before) (behind[a] = c), (before[c] = a);
-        if (kind !== KIND.behind) (behind[c] = b), (before[b] = c);
+        if (kind !== KIND.before && !(bytes[t] & WALKED_CA)) (behind[a] = c), (before[c] = a);
+        if (kind !== KIND.behind && !(bytes[t] & WALKED_BC)) (behind[c] = b), (before[b] = c);
         if (bytes[t] & THROUGH_CA) gates.push(a, c, b);
         if (bytes[t] & THROUGH_BC) gates.push(c, b, a);
         triangles[3 * t] = a;
