@@ -2,6 +2,8 @@
 #include "tests/tools/inputs.h"
 #include "tests/tools/run_isowave.h"
 
+#include <cstring>
+
 namespace isowave::tools_test {
 namespace {
 
@@ -168,6 +170,28 @@ TEST(View, NeverReplacesItsInput) {
     fs::create_hard_link(folder / "part.off", folder / "part.html");
     expectRefusal({"view", (folder / "part.off").string(), "-o", (folder / "part.html").string()}, 2,
                   "part.html");
+}
+
+// ---- lod --glb-lods
+
+TEST(GlbLodsOption, PutsAllLevelsIntoOneFileThatTheReportNames) {
+    const Folder folder;
+    const std::string part = (folder / "part").string();
+    succeed({"lod", kPart, "--voxels", "32", "--levels", "0..2", "--glb-lods", "quantized", "-o", part});
+    EXPECT_EQ(jsonFile(folder / "part/report.json")["glb_lods"], "part_lods.glb");
+    const std::string glb = contentOf(folder / "part/part_lods.glb");
+    std::uint32_t length = 0;
+    std::memcpy(&length, glb.data() + 12, 4);
+    const auto gltf = nlohmann::json::parse(glb.substr(20, length));
+    EXPECT_EQ(gltf["nodes"].size(), 3u);
+    EXPECT_EQ(gltf["nodes"][0]["extras"]["MSFT_screencoverage"], nlohmann::json::array({0.5, 0.25, 0.125}));
+}
+
+TEST(GlbLodsOption, NeedsLevels) {
+    const Folder folder;
+    expectRefusal(
+        {"lod", kPart, "--triangles", "500", "--glb-lods", "float", "-o", (folder / "part").string()}, 2,
+        "give --levels too");
 }
 
 }  // namespace

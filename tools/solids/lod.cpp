@@ -1,10 +1,12 @@
 // isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once.
+#include <cmath>
 #include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
+#include "io/mesh/glb_lods.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
 #include "isowave/ladder.h"
@@ -31,8 +33,10 @@ struct MeshWriter {
     MeshWriteOptions options;
     OutputFolder& out;
     std::unique_ptr<view::Page> page;  // of --view
+    std::optional<GlbLods> lods;       // of --glb-lods
     Progress progress;
     LadderFiles files;
+    double firstVoxel = 0;
     bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
     template <class Report>
@@ -47,6 +51,7 @@ struct MeshWriter {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofStep(report.step));
             fromLevel0 = fromLevel0 || report.step == 0;
+            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
             write(files.levels.back(), report, mesh);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
@@ -54,6 +59,18 @@ struct MeshWriter {
             write(files.budgets.back(), report, mesh);
         };
         return {level, budget, releaseFreedMemory};
+    }
+    // A level is fine enough while its voxel is at most so many voxels of the first one as the picture is smaller; the first one
+    // suits half a picture.
+    double coverageOf(const LevelReport& report) {
+        const double voxel = std::cbrt(report.spacing[0] * report.spacing[1] * report.spacing[2]);
+        if (firstVoxel == 0) firstVoxel = voxel;
+        return 0.5 * firstVoxel / voxel;
+    }
+    void writeLods() {
+        if (!lods) return;
+        files.lods = names.ofLods();
+        lods->write(out.place(files.lods));
     }
     void writePage() {
         if (!page) return;
@@ -104,6 +121,7 @@ class Lod : public Command {
     void declareLevels();
     void declareBudgets();
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+    std::optional<GlbLods> lodsOf(const Solid& solid) const;
     // Nothing without --view.
     std::unique_ptr<view::Page> pageOf(const Solid& solid, const std::string& name) const;
 
@@ -113,6 +131,7 @@ class Lod : public Command {
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
     bool view_ = false;
+    std::optional<bool> quantizedLods_;  // --glb-lods
 };
 
 Lod::Lod()
@@ -137,6 +156,12 @@ Lod::Lod()
     declareLevels();
     declareFormat(options_, format_);
     space_.declare(options_);
+    options_.value("--glb-lods", "quantized|float", "",
+                   "also one GLB with all levels (MSFT_lod), name_lods.glb: positions of 16 bits "
+                   "(KHR_mesh_quantization), or float32",
+                   [this](const std::string& v) {
+                       quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
+                   });
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
@@ -185,6 +210,12 @@ void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
     if (view_) out.refuseTaken(names.ofPage());
+    if (quantizedLods_) out.refuseTaken(names.ofLods());
+}
+
+std::optional<GlbLods> Lod::lodsOf(const Solid& solid) const {
+    if (!quantizedLods_) return std::nullopt;
+    return GlbLods({space_.of(solid), metresPerUnitOf(solid)}, *quantizedLods_);
 }
 
 std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& name) const {
@@ -193,6 +224,8 @@ std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& n
 
 int Lod::run(Console& console) {
     if (view_) view::requirePages();
+    if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
+        throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     OutputFolder out(*output_, Inputs(arguments));
     const MeshFormat format = format_.value_or(MeshFormat::ply);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
@@ -214,10 +247,12 @@ int Lod::run(Console& console) {
                           .options = {space_.of(solid), metresPerUnitOf(solid)},
                           .out = out,
                           .page = pageOf(solid, out.name()),
+                          .lods = lodsOf(solid),
                           .progress = console.progress(),
                           .files = {}};
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
+        writer.writeLods();
         writer.writePage();
         finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();

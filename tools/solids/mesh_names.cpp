@@ -37,6 +37,8 @@ std::string MeshNames::ofBudget(const BudgetReport& budget) const {
 
 std::string MeshNames::ofPage() const { return folder_ + ".html"; }
 
+std::string MeshNames::ofLods() const { return folder_ + "_lods.glb"; }
+
 std::string MeshNames::suffixOf(const std::string& name) const {
     const std::size_t begin = folder_.size() + 1;
     return name.substr(begin, name.size() - begin - std::string_view(extensionOf(format_)).size());

@@ -21,6 +21,8 @@ class MeshNames {
     std::string ofBudget(const BudgetReport& budget) const;
     // part.html, the page of --view.
     std::string ofPage() const;
+    // part_lods.glb, all levels in one file.
+    std::string ofLods() const;
     // "L2" of part_L2.ply: what the name of a mesh says besides the folder's.
     std::string suffixOf(const std::string& name) const;
     // Of all steps that may be reached, and of all budgets.
