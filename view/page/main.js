@@ -276,7 +276,7 @@ function frame(now) {
     if (cube) cube.draw();
     putScale();
     const slow = moving && stage.slowest > 60;
-    dirty = slow;  // until the hand rests, when the mesh itself is drawn
+    dirty = slow || Boolean(stage.wantsToMeasureAgain);  // slow: until the hand rests, when the mesh itself is drawn
     ROOT.dataset.drawn = `${page.levels[state.a].facts.name}`;
     if (!ROOT.dataset.first) ROOT.dataset.first = Math.round(performance.now());
 }
