@@ -134,6 +134,7 @@ class Maker {
         report.seconds = clock_.secondsSoFar() - begin;
         if (visitor_.level && !vanished_) {
             const StageClock::Scope scope(clock_, "write");
+            progress_("writing", 0);
             visitor_.level(report, made.mesh);
             progress_.check();
             report.seconds = clock_.secondsSoFar() - begin;

@@ -155,6 +155,7 @@ void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& 
     if (options_.refit) level0_->surface = surfaceSamples(mesh);
     if (options_.hold == Holding::local) {
         const StageClock::Scope scope(clock_, "hold");
+        progress_("finding what is thin", 0);
         level0_->hold =
             std::make_unique<LevelHold>(surfaceOf(mesh, field.transform(), refine), field, progress_);
     }
@@ -409,6 +410,7 @@ bool LevelMesher::holds(int step) const { return step != 0 && level0_ && level0_
 
 void LevelMesher::hold(LevelMesh& level) const {
     const StageClock::Scope scope(clock_, "hold");
+    progress_("holding what is thin", 0);
     LevelReport& report = level.report;
     const HoldReport held = level0_->hold->apply(level.field, report.refine, {}, progress_);
     const auto share = [&](std::int64_t inside) {

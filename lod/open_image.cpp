@@ -187,6 +187,10 @@ SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions
     return seen;
 }
 
+ImageSolid shapeOf(const ImagePlan& plan, const SeenImage& seen, const SolidOptions& options) {
+    return {.iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
+}
+
 Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const Image image = seen.stream->header();
@@ -201,8 +205,7 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     solid.input = reportOf(name, image, plan, seen.statistics, options);
     solid.openBorder = borderOf(solid.input);
     solid.space = Space::lps;
-    const ImageSolid shape{
-        .iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
+    const ImageSolid shape = shapeOf(plan, seen, options);
     const auto nodes = [&] {
         NodeCollection result = nodesFromImage(*seen.stream, shape, progress);
         seen.stream.reset();
@@ -240,6 +243,15 @@ Solid::State openImage(const Image& image, const SolidOptions& options, const Pr
         return looked(ImageStream(image), "image", options, progress);
     }();
     return fitted(std::move(seen), "image", options, progress, clock);
+}
+
+ImagePlanned planImage(const std::filesystem::path& path, const SolidOptions& options,
+                       const Progress& progress) {
+    const std::string name = path.string();
+    SeenImage seen = looked(ImageStream(path, imageReadOptions(options)), name, options, progress);
+    const ImagePlan plan = planFor(seen.stream->header(), seen.statistics, name, options, progress);
+    const ImageSolid shape = shapeOf(plan, seen, options);
+    return {std::move(*seen.stream), shape, plan.kind, plan.fit};
 }
 
 ImageReadOptions imageReadOptions(const SolidOptions& options) {

@@ -182,6 +182,12 @@ bool isHeldBetween(const Solid::State& solid, const Progress& progress) {
            !polygonize(*solid.field, {.refine = kFinestRefine}, progress).triangles.empty();
 }
 
+double bandPointsOf(const TriangleMesh& mesh, double voxel, const Fitting& fitting,
+                    const SolidOptions& options) {
+    const double reach = fitting.distance.halfWidth + options.thicken.value_or(0) / 2 / voxel;
+    return estimateBandVoxels(mesh, voxel, reach);
+}
+
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const TriangleMesh& mesh = input.loaded.mesh;
@@ -189,8 +195,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 
     const Fitting fitting = fittingOf(options, FitMethod::distance);
     const double voxel = voxelSizeFor(mesh, options, name, progress), limit = memoryLimit(options.maxMemory);
-    const double reach = fitting.distance.halfWidth + options.thicken.value_or(0) / 2 / voxel;
-    refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, reach), limit, kRemedy);
+    refuseTooLarge(name, kBytesPerBandPoint * bandPointsOf(mesh, voxel, fitting, options), limit, kRemedy);
     const auto transform = transformForMesh(mesh, voxel);
     Solid::State solid;
     solid.input = reportOf(input, name, voxel);
@@ -266,6 +271,20 @@ LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
         for (auto& n : loaded.mesh.normals) n[0] = -n[0], n[1] = -n[1];
     }
     return loaded;
+}
+
+MeshPlan planMesh(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress) {
+    checkOptions(options);
+    const std::string name = path.string();
+    ClosedMesh input = closed(loadMesh(path, progress, options.unit), name, options, progress);
+    for (const std::string& note : input.repair.notes) progress.say(note);
+    const double voxel = voxelSizeFor(input.loaded.mesh, options, name, progress);
+    MeshPlan plan;
+    plan.input = reportOf(input, name, voxel);
+    plan.bandPoints =
+        bandPointsOf(input.loaded.mesh, voxel, fittingOf(options, FitMethod::distance), options);
+    plan.mesh = std::move(input.loaded.mesh);
+    return plan;
 }
 
 Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,

@@ -107,6 +107,12 @@ InputKind kindOf(const fs::path& path, const SolidOptions& options) {
                      "--size, --type and --spacing");
 }
 
+InputKind checkedKindOf(const fs::path& path, const SolidOptions& options) {
+    const InputKind kind = kindOf(path, options);
+    refuseForeignOptions(path.string(), kind, options);
+    return kind;
+}
+
 }  // namespace lod
 
 double Solid::K() const { return state_->field ? state_->field->K : state_->pyramid->K; }

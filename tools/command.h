@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "tools/output.h"
+#include "tools/talk.h"
 
 namespace isowave::tools {
 
@@ -47,6 +48,8 @@ class OptionList {
                 std::optional<std::filesystem::path>& set);
 
     const std::vector<Option>& all() const { return options_; }
+    // "--output", "--iso", ...: the long ones, --help with them.
+    std::vector<std::string_view> names() const;
     // The inputs whose options were given.
     std::vector<std::filesystem::path> inputs() const;
     // The results whose options were given.
@@ -80,6 +83,8 @@ class Command {
     bool takesMore() const { return description_.arguments.ends_with("..."); }
     // An existing file that does not begin as reports do, {"version", is not replaced by --json. Throws UsageError.
     void refuseToReplaceWhatIsNoReport() const;
+    // Whether the arguments may be left out, because an option has taken their place.
+    virtual bool hasOtherInputs() const { return false; }
     // Whether -o must be given.
     virtual bool needsOutput() const { return false; }
     bool hasOutput() const { return output_.has_value(); }
@@ -90,7 +95,7 @@ class Command {
 
     std::vector<std::filesystem::path> arguments;  // the positional ones, in order
     int threads = 0;                               // 0: all
-    bool quiet = false;
+    Talk talk;
 
   private:
     Description description_;
@@ -106,7 +111,8 @@ class Command {
     void declareOutput(std::string_view help);
     void declareJson();
     void declareThreads();
-    void declareQuiet();
+    // --quiet, --verbose, --progress.
+    void declareTalk();
     bool jsonToStandardOutput() const { return json_ && *json_ == "-"; }
     bool jsonToFile() const { return json_ && *json_ != "-"; }
     // Finds out at once whether the file of --json can be written, before there are other results. Throws OperationError.

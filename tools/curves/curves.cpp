@@ -156,7 +156,7 @@ CurvesCommand::CurvesCommand()
     declareInput();
     declareFit();
     declareThreads();
-    declareQuiet();
+    declareTalk();
 }
 
 void CurvesCommand::declareDrawing() {

@@ -1,11 +1,15 @@
-// isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
-// the folder at once.
+// isowave lod INPUT... -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
+// the folder at once. Several inputs get a folder each, one after another.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
+#include "base/number_text.h"
 #include "io/mesh/glb_lods.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
@@ -16,7 +20,9 @@
 #include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/ladder_report.h"
+#include "tools/solids/dry_run_text.h"
 #include "tools/solids/mesh_names.h"
+#include "tools/solids/parts.h"
 #include "tools/solids/solid_options.h"
 #include "tools/view/level_facts.h"
 #include "tools/view/pages.h"
@@ -89,16 +95,44 @@ std::string unitShown(const Solid& solid) {
     return solid.space() == Space::unspecified ? "" : " [mm]";
 }
 
-// What can fail for want of room comes first; then only names change.
-void finish(const Ladder& ladder, const LadderFiles& files, const std::string& unit, bool toStdout,
-            AtomicFile* copy, OutputFolder& out, Console& console) {
-    const std::string json = jsonOf(ladder, files);
+// All that there is to tell about one input's meshes.
+struct Made {
+    Ladder ladder;
+    LadderFiles files;
+    std::string unit;  // as unitShown() has it
+};
+
+void writeReport(const std::string& json, OutputFolder& out) {
     AtomicFile file(out.place(kReport));
     writeWhole(file, json);
     file.commit();
+}
+
+// "5 levels, 12,000 to 96 triangles"
+PartStory storyOf(const Made& made, const OutputFolder& out) {
+    PartStory story;
+    const std::vector<Level>& all = made.ladder.levels;
+    const auto levels =
+        std::count_if(all.begin(), all.end(), [](const Level& l) { return !l.report.vanished(); });
+    const auto budgets = static_cast<std::int64_t>(made.ladder.budgets.size());
+    if (levels > 0)
+        story.text =
+            fmt::format("{}, {} to {} triangles", counted(levels, "level"),
+                        grouped(all.front().report.topology.triangles),
+                        grouped(all[static_cast<std::size_t>(levels) - 1].report.topology.triangles));
+    if (budgets > 0)
+        story.text += (levels > 0 ? ", " : "") + counted(budgets, "mesh by budget", "meshes by budget");
+    story.json = {{"report", (out.folder() / kReport).string()}, {"levels", levels}, {"budgets", budgets}};
+    return story;
+}
+
+// What can fail for want of room comes first; then only names change.
+void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
+    const std::string json = jsonOf(made.ladder, made.files);
+    writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    console.print(toStdout ? json : textOf(ladder, files, unit));
+    console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
     console.flush();
     out.commit();
     if (copy) copy->commit();
@@ -114,12 +148,20 @@ double share(const std::string& text) {
 class Lod : public Command {
   public:
     Lod();
-    bool needsOutput() const override { return true; }
+    bool needsOutput() const override { return !dryRun_; }
+    bool hasOtherInputs() const override { return parts_.list.has_value(); }
     int run(Console& console) override;
 
   private:
     void declareLevels();
     void declareBudgets();
+    void check();
+    int runOne(Console& console);
+    int runParts(Console& console);
+    PartStory runPart(const Part& part, const Progress& progress) const;
+    MeshNames namesIn(const OutputFolder& out) const;
+    Made make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+              const Progress& progress) const;
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
     std::optional<GlbLods> lodsOf(const Solid& solid) const;
     // Nothing without --view.
@@ -128,6 +170,8 @@ class Lod : public Command {
     LevelOptions levels_;
     BudgetOptions budgets_;
     SolidOptions solid_;
+    PartsChoice parts_;
+    bool dryRun_ = false;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
     bool view_ = false;
@@ -136,7 +180,7 @@ class Lod : public Command {
 
 Lod::Lod()
     : Command(
-          {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
+          {"lod", "INPUT...", "a solid -> a ladder of closed meshes, one a level, and a report",
            "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
            "with "
            "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse). -o "
@@ -151,8 +195,14 @@ Lod::Lod()
            "it, with edges collapsed; the report says which and why. The ladder ends where one node is left, "
            "or "
            "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
-           "leaves the folder as it was."}) {
+           "leaves the folder as it was. Several inputs, -o out: each gets a folder of its own, out/NAME, as "
+           "if "
+           "it were run alone; one that fails does not stop the others."}) {
     declareOutput("the folder that gets one mesh a level, and report.json");
+    parts_.declare(options_);
+    options_.flag("--dry-run",
+                  "make nothing; say voxels, memory, levels, and how many voxels thin the thinnest walls are",
+                  dryRun_);
     declareLevels();
     declareFormat(options_, format_);
     space_.declare(options_);
@@ -169,7 +219,7 @@ Lod::Lod()
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
-    declareQuiet();
+    declareTalk();
 }
 
 void Lod::declareLevels() {
@@ -206,7 +256,6 @@ void Lod::declareBudgets() {
 }
 
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
-    if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
     if (view_) out.refuseTaken(names.ofPage());
@@ -222,16 +271,51 @@ std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& n
     return view_ ? std::make_unique<view::Page>(pageOptionsOf(solid.input(), name)) : nullptr;
 }
 
-int Lod::run(Console& console) {
+void Lod::check() {
     if (view_) view::requirePages();
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
-    OutputFolder out(*output_, Inputs(arguments));
-    const MeshFormat format = format_.value_or(MeshFormat::ply);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
     checkRanges(levels_);
-    const MeshNames names(out.name(), format, levels_, budgets_);
+}
+
+MeshNames Lod::namesIn(const OutputFolder& out) const {
+    return MeshNames(out.name(), format_.value_or(MeshFormat::ply), levels_, budgets_);
+}
+
+Made Lod::make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+               const Progress& progress) const {
+    Solid solid = open(input, solid_, progress);
+    const std::string unit = unitShown(solid);
+    MeshWriter writer{.names = names,
+                      .format = format_.value_or(MeshFormat::ply),
+                      .options = {space_.of(solid), metresPerUnitOf(solid)},
+                      .out = out,
+                      .page = pageOf(solid, out.name()),
+                      .lods = lodsOf(solid),
+                      .progress = progress,
+                      .files = {}};
+    Ladder ladder = makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), progress);
+    writer.writeLods();
+    writer.writePage();
+    return {std::move(ladder), std::move(writer.files), unit};
+}
+
+int Lod::run(Console& console) {
+    if (dryRun_) {
+        check();
+        if (json_) throw UsageError("--dry-run has no report; leave out --json");
+        return tellDryRuns(parts_.inputs(arguments), solid_, console);
+    }
+    return parts_.asksForParts(arguments) ? runParts(console) : runOne(console);
+}
+
+int Lod::runOne(Console& console) {
+    OutputFolder out(*output_, Inputs(arguments));
+    check();
+    const MeshNames names = namesIn(out);
+    if (jsonToFile()) out.keepFree(*json_);
     refuseTaken(names, out);
     std::optional<OutputFile> copyFolders;
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
@@ -240,26 +324,43 @@ int Lod::run(Console& console) {
         copy.emplace(*json_);
     }
     try {
-        Solid solid = open(arguments[0], solid_, console.progress());
-        const std::string unit = unitShown(solid);
-        MeshWriter writer{.names = names,
-                          .format = format,
-                          .options = {space_.of(solid), metresPerUnitOf(solid)},
-                          .out = out,
-                          .page = pageOf(solid, out.name()),
-                          .lods = lodsOf(solid),
-                          .progress = console.progress(),
-                          .files = {}};
-        const Ladder ladder =
-            makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
-        writer.writeLods();
-        writer.writePage();
-        finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
+        const Made made = make(arguments[0], names, out, console.progress());
+        finish(made, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
     }
     return 0;
+}
+
+// --json has what became of each input; the reports are in the folders.
+int Lod::runParts(Console& console) {
+    check();
+    const std::vector<std::filesystem::path> inputs = parts_.inputs(arguments);
+    std::vector<Part> parts = partsOf(inputs, *output_);
+    if (jsonToFile()) refuseAmong(parts, *json_);
+    openJson();
+    PartsRun all(std::move(parts), console);
+    const int code = all.run([this](const Part& part, const Progress& p) { return runPart(part, p); },
+                             jsonToStandardOutput());
+    if (code != kInterrupted) tell(console, all.text(), dumped(all.json()));
+    return code;
+}
+
+PartStory Lod::runPart(const Part& part, const Progress& progress) const {
+    OutputFolder out(part.output, Inputs({part.input}));
+    const MeshNames names = namesIn(out);
+    refuseTaken(names, out);
+    try {
+        const Made made = make(part.input, names, out, progress);
+        writeReport(jsonOf(made.ladder, made.files), out);
+        progress.check();
+        const PartStory story = storyOf(made, out);
+        out.commit();
+        return story;
+    } catch (const OperationError& error) {
+        throw OperationError(out.publicText(error.what()));
+    }
 }
 
 }  // namespace

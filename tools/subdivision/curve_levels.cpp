@@ -72,7 +72,7 @@ CurveLevels::CurveLevels()
         "--keep", "N", "", "keep only the N longest details of each curve, into thresholded",
         [this](const std::string& v) { report_.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--compare-schemes", "compare the schemes' errors too", report_.compare);
-    declareQuiet();
+    declareTalk();
 }
 
 CurveReport CurveLevels::reported(const CurveFile& file) const {

@@ -60,7 +60,7 @@ FiltersCommand::FiltersCommand()
                   "other option",
                   boundary_);
     options_.result("--svg", "FILE", "draw the diagrams into this file", svg_);
-    declareQuiet();
+    declareTalk();
 }
 
 Filters FiltersCommand::wanted() const {

@@ -64,7 +64,7 @@ Relief::Relief()
                            v, {{"rows", ReliefLayout::Rows}, {"quincunx", ReliefLayout::Quincunx}});
                    });
     options_.flag("--compare-schemes", "compare the schemes' errors too", report_.compare);
-    declareQuiet();
+    declareTalk();
 }
 
 int Relief::run(Console& console) {

@@ -53,7 +53,7 @@ Reverse::Reverse()
                    [this](const std::string& v) { variant_ = v; });
     declareCrease(options_, creaseAngle_);
     options_.result("--details", "FILE", "the file that gets the details", details_);
-    declareQuiet();
+    declareTalk();
 }
 
 DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {

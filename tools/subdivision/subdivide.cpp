@@ -25,7 +25,7 @@ class Subdivide : public Command {
         declareDepth(options_, "1", "how many subdivisions", depth_);
         declareScheme(options_, scheme_);
         declareCrease(options_, creaseAngle_);
-        declareQuiet();
+        declareTalk();
     }
     bool needsOutput() const override { return true; }
     int run(Console& console) override;

@@ -24,7 +24,7 @@ class View : public Command {
                "Coordinates in it are rounded to 1/65535 of the longest side."}) {
         declareOutput("the page, a .html file");
         declareThreads();
-        declareQuiet();
+        declareTalk();
     }
     bool needsOutput() const override { return true; }
 
