@@ -39,9 +39,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME isowave)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # what the program is linked to
-set(CPACK_COMPONENT_TOOL_DESCRIPTION "closed meshes of a solid at many levels of detail
- Takes a CT scan, a mesh or a level set apart by B-spline wavelets and gives a
- closed mesh at every level, from full detail down to a blob.")
+set(CPACK_COMPONENT_TOOL_DESCRIPTION "The command takes a CT scan, a mesh or a level set apart and gives a closed
+mesh at every level, from full detail down to a blob.")
 
 # Static libraries: what they use has to be there when a program is linked; isowaveConfig.cmake looks for it.
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libisowave-dev)
@@ -49,7 +48,6 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-iostreams-dev, libtbb-dev, libgdcm-dev, libtiff-dev, libpng-dev, \
 zlib1g-dev, libfmt-dev, libgmp-dev, libmpfr-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "isowave, cmake, g++")
-set(CPACK_COMPONENT_DEV_DESCRIPTION "closed meshes of a solid at many levels of detail (library)
- The C++ library of isowave: headers, static libraries and a CMake package.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "The library: headers, static libraries and a CMake package.")
 
 include(CPack)
