@@ -122,6 +122,7 @@ struct HoldSummary {
     std::int64_t insidePlain = 0;    // how many of them the plain level has inside
     std::int64_t inside = 0;         // and this one
     std::int64_t thickened = 0;      // where the wall is thinner than the mesh's sampling can hold
+    std::int64_t gaps = 0;           // places in gaps narrower than the level's voxel that were filled
     std::int64_t controlPoints = 0;  // changed
     std::int64_t unmet = 0;          // conditions that could not be met
 };

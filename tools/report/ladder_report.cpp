@@ -77,8 +77,10 @@ Json wallsJson(const std::vector<WallThickness>& walls) {
 
 Json holdJson(const std::optional<HoldSummary>& h) {
     if (!h) return nullptr;
-    return {{"samples", h->samples},     {"inside_plain", h->insidePlain},     {"inside", h->inside},
-            {"thickened", h->thickened}, {"control_points", h->controlPoints}, {"unmet", h->unmet}};
+    return {{"samples", h->samples},  {"inside_plain", h->insidePlain},
+            {"inside", h->inside},    {"thickened", h->thickened},
+            {"gaps_filled", h->gaps}, {"control_points", h->controlPoints},
+            {"unmet", h->unmet}};
 }
 
 // What is known of the mesh itself.
