@@ -214,6 +214,8 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         signs.emplace(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
                       progress);
         putTruth(solid.input, input, voxel, points, *signs);
+        if (!input.repair.evenOdd && !signs->lines().hasOverlap())
+            solid.surface = std::make_shared<TriangleMesh>(TriangleMesh{mesh.points, mesh.triangles, {}});
     }
     const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
         if (options.walls && signs)

@@ -145,6 +145,11 @@ struct LevelEdit {
     double volume = 0;                         // world units^3 that the solid gained
 };
 
+// How far level 0 is from the mesh that was read, world units: rms and largest distance both ways, from samples.
+struct InputDistance {
+    double rmsTo = 0, maxTo = 0, rmsFrom = 0, maxFrom = 0;
+};
+
 struct LevelReport {
     int step = 0;
     std::optional<int> level;         // where step is 3 level
@@ -176,6 +181,9 @@ struct LevelReport {
     std::optional<SamplingReport> sampling;
     // World units; from samples on the level, and on some of level 0's triangles. 0 for level 0 itself.
     std::optional<double> rmsToLevel0, maxToLevel0, rmsFromLevel0, maxFromLevel0;
+    // Of the two rms, with 95 % confidence: they are measured on samples of large meshes.
+    std::optional<double> rmsToLevel0Error, rmsFromLevel0Error;
+    std::optional<InputDistance> toInput;  // at level 0, of a closed mesh that does not overlap itself
     std::optional<double> maxDeviation, rmsDeviation;  // of triangles from the zero set, world units
     double seconds = 0;
 };
@@ -190,6 +198,9 @@ struct BudgetReport {
     MeshTopology topology;
     std::int64_t selfIntersections = 0;  // pairs of triangles
     OneSidedDistance toLevel0, fromLevel0;
+    // No point of either surface is farther from the other, the mesh that was read; nothing where there is none, or it overlaps
+    // itself.
+    std::optional<double> maxToInput;
     double seconds = 0;
 };
 

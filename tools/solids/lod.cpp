@@ -142,7 +142,8 @@ void Lod::declareBudgets() {
                    "%): name_RR",
                    [this](const std::string& v) { budgets_.ratios = list(v, share); });
     options_.value("--tolerance", "D,D,...", "",
-                   "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
+                   "the fewest triangles that stay within D (world units) of the mesh that was read, of "
+                   "level 0 for images, both ways: name_DD",
                    [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
     options_.value(
         "--max-genus", "N", "",
