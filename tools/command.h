@@ -61,9 +61,10 @@ class Command {
   public:
     struct Description {
         std::string_view name;
-        std::string_view arguments;  // "INPUT", "A B", "[SUBDIVISION]": one positional argument a word
-        std::string_view summary;    // one line
-        std::string_view details;    // a paragraph for --help
+        std::string_view
+            arguments;  // "INPUT", "A B", "[SUBDIVISION]", "INPUT..." (one or more): one positional argument a word
+        std::string_view summary;  // one line
+        std::string_view details;  // a paragraph for --help
     };
 
     explicit Command(const Description& description) : description_(description) {}
@@ -75,6 +76,8 @@ class Command {
     std::string_view name() const { return description_.name; }
     const OptionList& options() const { return options_; }
     int argumentCount() const;
+    // "INPUT...": or more than that.
+    bool takesMore() const { return description_.arguments.ends_with("..."); }
     // An existing file that does not begin as reports do, {"version", is not replaced by --json. Throws UsageError.
     void refuseToReplaceWhatIsNoReport() const;
     // Whether -o must be given.

@@ -74,7 +74,8 @@ std::map<std::string, std::set<std::string>> makeArrows() {
         add(kind, {"subdivision/filters", "io/mesh", "io/picture", "io/vector"});
         subdivision.insert(kind);
     }
-    add("subdivision", subdivision);  // the files at the top: the schemes of all four, by name
+    add("subdivision", subdivision);      // the files at the top: the schemes of all four, by name
+    add("view", {"volume", "curves2d"});  // exact distances to a surface and to curves
     std::set<std::string> all;
     for (const auto& [part, to] : arrows) all.insert(part);
     arrows["tools"] = all;
@@ -208,6 +209,7 @@ constexpr Registry kRegistries[] = {
     {"tools/subdivision/relief.cpp", kSubcommand},
     {"tools/subdivision/reverse.cpp", kSubcommand},
     {"tools/subdivision/subdivide.cpp", kSubcommand},
+    {"tools/view/view.cpp", kSubcommand},
     {"simplify/simplifier.cpp", kSimplifier},
     {"lod/without_simplify/simplifier.cpp", kSimplifier},
 };
@@ -339,6 +341,8 @@ TEST(Layout, TheArrowCheckerCanFail) {
     wrong("subdivision/filters/mask.h", "subdivision/curves/curve.h", "to subdivision/curves");
     wrong("subdivision/curves/curve.h", "subdivision/meshes/mesh.h", "to subdivision/meshes");
     wrong("subdivision/meshes/mesh.h", "subdivision/catalogue.h", "from subdivision/meshes to subdivision");
+    wrong("view/page.h", "lod/ladder.h", "from view to lod");
+    wrong("lod/ladder.h", "view/page.h", "from lod to view");
     wrong("volume/fit.cpp", "fit.h", "folder/file.h");
     EXPECT_THAT(arrowComplaint("wavelets/interval/interval.h", {"openvdb/openvdb.h", false}),
                 HasSubstr("no grid"));

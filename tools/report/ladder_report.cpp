@@ -239,6 +239,8 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
     report["budgets"] = Json::array();
     for (std::size_t i = 0; i < ladder.budgets.size(); ++i)
         report["budgets"].push_back(budgetJson(ladder.budgets[i].report, nameAt(files.budgets, i)));
+    if (!files.lods.empty()) report["glb_lods"] = files.lods;
+    if (!files.view.empty()) report["view"] = files.view;
     report["steps"] = ladder.steps;
     report["coefficients_stored"] = ladder.coefficientsStored;
     report["control_points"] = ladder.controlPoints;

@@ -1,9 +1,12 @@
 // isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once.
+#include <cmath>
+#include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
+#include "io/mesh/glb_lods.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
 #include "isowave/ladder.h"
@@ -15,6 +18,8 @@
 #include "tools/report/ladder_report.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
+#include "tools/view/level_facts.h"
+#include "tools/view/pages.h"
 
 namespace isowave::tools {
 namespace {
@@ -27,21 +32,52 @@ struct MeshWriter {
     MeshFormat format;
     MeshWriteOptions options;
     OutputFolder& out;
+    std::unique_ptr<view::Page> page;  // of --view
+    std::optional<GlbLods> lods;       // of --glb-lods
+    Progress progress;
     LadderFiles files;
+    double firstVoxel = 0;
+    bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
-    void write(const std::string& name, const TriangleMesh& mesh) {
+    template <class Report>
+    void write(const std::string& name, const Report& report, const TriangleMesh& mesh) {
         writeMesh(out.place(name), mesh, format, options);
+        if (!page) return;
+        view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
+        facts.file = name;
+        page->add(std::move(facts), mesh, progress);
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofStep(report.step));
-            write(files.levels.back(), mesh);
+            fromLevel0 = fromLevel0 || report.step == 0;
+            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
+            write(files.levels.back(), report, mesh);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), mesh);
+            write(files.budgets.back(), report, mesh);
         };
         return {level, budget, releaseFreedMemory};
+    }
+    // A level is fine enough while its voxel is at most so many voxels of the first one as the picture is smaller; the first one
+    // suits half a picture.
+    double coverageOf(const LevelReport& report) {
+        const double voxel = std::cbrt(report.spacing[0] * report.spacing[1] * report.spacing[2]);
+        if (firstVoxel == 0) firstVoxel = voxel;
+        return 0.5 * firstVoxel / voxel;
+    }
+    void writeLods() {
+        if (!lods) return;
+        files.lods = names.ofLods();
+        lods->write(out.place(files.lods));
+    }
+    void writePage() {
+        if (!page) return;
+        files.view = names.ofPage();
+        AtomicFile file(out.place(files.view));
+        writeWhole(file, page->html());
+        file.commit();
     }
 };
 
@@ -85,12 +121,17 @@ class Lod : public Command {
     void declareLevels();
     void declareBudgets();
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+    std::optional<GlbLods> lodsOf(const Solid& solid) const;
+    // Nothing without --view.
+    std::unique_ptr<view::Page> pageOf(const Solid& solid, const std::string& name) const;
 
     LevelOptions levels_;
     BudgetOptions budgets_;
     SolidOptions solid_;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
+    bool view_ = false;
+    std::optional<bool> quantizedLods_;  // --glb-lods
 };
 
 Lod::Lod()
@@ -115,6 +156,13 @@ Lod::Lod()
     declareLevels();
     declareFormat(options_, format_);
     space_.declare(options_);
+    options_.value("--glb-lods", "quantized|float", "",
+                   "also one GLB with all levels (MSFT_lod), name_lods.glb: positions of 16 bits "
+                   "(KHR_mesh_quantization), or float32",
+                   [this](const std::string& v) {
+                       quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
+                   });
+    options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
     declareBudgets();
@@ -162,9 +210,23 @@ void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
     if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
+    if (view_) out.refuseTaken(names.ofPage());
+    if (quantizedLods_) out.refuseTaken(names.ofLods());
+}
+
+std::optional<GlbLods> Lod::lodsOf(const Solid& solid) const {
+    if (!quantizedLods_) return std::nullopt;
+    return GlbLods({space_.of(solid), metresPerUnitOf(solid)}, *quantizedLods_);
+}
+
+std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& name) const {
+    return view_ ? std::make_unique<view::Page>(pageOptionsOf(solid.input(), name)) : nullptr;
 }
 
 int Lod::run(Console& console) {
+    if (view_) view::requirePages();
+    if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
+        throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     OutputFolder out(*output_, Inputs(arguments));
     const MeshFormat format = format_.value_or(MeshFormat::ply);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
@@ -181,9 +243,18 @@ int Lod::run(Console& console) {
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
         const std::string unit = unitShown(solid);
-        MeshWriter writer{names, format, {space_.of(solid), metresPerUnitOf(solid)}, out, {}};
+        MeshWriter writer{.names = names,
+                          .format = format,
+                          .options = {space_.of(solid), metresPerUnitOf(solid)},
+                          .out = out,
+                          .page = pageOf(solid, out.name()),
+                          .lods = lodsOf(solid),
+                          .progress = console.progress(),
+                          .files = {}};
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
+        writer.writeLods();
+        writer.writePage();
         finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
