@@ -14,7 +14,7 @@ import isowave
 
 def test_progress_tells_stages_and_shares_on_the_thread_that_called():
     calls = []
-    isowave.lod(GEAR, voxels=96, progress=lambda share, stage: calls.append((share, stage, threading.get_ident())))
+    isowave.lod(GEAR, voxels=64, levels=0, progress=lambda share, stage: calls.append((share, stage, threading.get_ident())))
     assert len({stage for _, stage, _ in calls}) >= 2
     assert all(0 <= share <= 1 for share, _, _ in calls)
     assert {thread for _, _, thread in calls} == {threading.get_ident()}
@@ -51,7 +51,7 @@ class Bar:
 
 def test_a_bar_of_tqdm_moves():
     bar = Bar()
-    isowave.lod(GEAR, voxels=96, progress=bar)
+    isowave.lod(GEAR, voxels=64, levels=0, progress=bar)
     assert bar.seen and all(0 <= n <= 100 for _, n in bar.seen)
     with pytest.raises(isowave.UsageError, match="progress"):
         isowave.lod(GEAR, progress=3)
@@ -60,7 +60,7 @@ def test_a_bar_of_tqdm_moves():
 def test_tqdm_itself():
     tqdm = pytest.importorskip("tqdm")
     with open(os.devnull, "w") as nowhere, tqdm.tqdm(total=100, file=nowhere) as bar:
-        isowave.lod(GEAR, voxels=96, progress=bar)
+        isowave.lod(GEAR, voxels=64, levels=0, progress=bar)
         assert bar.desc and 0 < bar.n <= 100
 
 
@@ -84,7 +84,7 @@ def test_other_threads_run_meanwhile():
 
     clock = threading.Thread(target=tick)
     clock.start()
-    isowave.lod(GEAR, voxels=128)
+    isowave.lod(GEAR, voxels=96, levels=0)
     done.set()
     clock.join()
     assert max(np.diff(ticks)) < 1  # seen 0.06: the machine's own; with the GIL held it would be the whole job
@@ -105,7 +105,7 @@ def test_work_runs_on_several_threads_of_python_at_once():
 
 
 def test_the_result_does_not_depend_on_threads_to_the_bit():
-    one, two = (isowave.lod(GEAR, voxels=64, threads=n) for n in (1, 2))
+    one, two = (isowave.lod(GEAR, voxels=48, threads=n) for n in (1, 2))
     assert one.report["threads"] == 1
     for a, b in zip(one, two):
         assert np.array_equal(a.points, b.points) and np.array_equal(a.triangles, b.triangles)

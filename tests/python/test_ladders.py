@@ -106,11 +106,11 @@ def test_the_ladder_ends_before_a_level_at_which_nothing_is_left(ball):
 
 
 def test_budgets_come_after_levels(tmp_path):
-    part = isowave.lod(GEAR, voxels=64, triangles=[2000, 500], levels=0)
+    part = isowave.lod(GEAR, voxels=32, triangles=[2000, 500], levels=0)
     assert len(part.levels) == 1 and len(part.budgets) == 2 and part[1] is part.budgets[0]
     assert [len(level.triangles) <= most for level, most in zip(part.budgets, (2000, 500))] == [True, True]
     assert part[1].report["triangles_asked"] == 2000 and "why" in part[2].report
-    report = command_report(tmp_path, GEAR, "--voxels", 64, "--triangles", "2000,500", "--levels", 0)
+    report = command_report(tmp_path, GEAR, "--voxels", 32, "--triangles", "2000,500", "--levels", 0)
     assert stable(part.report) == stable(report)
     names = [p.rsplit("/", 1)[1] for p in part.save(tmp_path / "x/part")]
     assert names == ["part_L0.ply", "part_T2000.ply", "part_T500.ply", "report.json"]
