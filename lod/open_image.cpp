@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/image/view.h"
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
@@ -240,6 +241,15 @@ Solid::State openImage(const Image& image, const SolidOptions& options, const Pr
         return looked(ImageStream(image), "image", options, progress);
     }();
     return fitted(std::move(seen), "image", options, progress, clock);
+}
+
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock) {
+    SeenImage seen = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return looked(ImageStream(voxels, options.image), imageio::kViewName, options, progress);
+    }();
+    return fitted(std::move(seen), imageio::kViewName, options, progress, clock);
 }
 
 ImageReadOptions imageReadOptions(const SolidOptions& options) {

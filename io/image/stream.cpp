@@ -7,7 +7,9 @@
 #include <mutex>
 
 #include "io/image/check.h"
+#include "io/image/fill_nan.h"
 #include "io/image/open_source.h"
+#include "io/image/view.h"
 
 namespace isowave {
 using namespace imageio;
@@ -16,6 +18,8 @@ namespace {
 
 // Fits into a core's cache, so that voxels are looked at while they are there.
 constexpr std::int64_t kSlabBytes = 1 << 20;
+// Of voxels whose z is fastest in memory: a line of the cache holds 16 float32 of them.
+constexpr std::int64_t kFewestGathered = 16;
 // A batch is long enough to keep many threads busy and short enough to be forgotten soon.
 constexpr std::int64_t kBatchSlabs = 32;
 
@@ -172,6 +176,22 @@ ImageStream::ImageStream(const Image& image, std::int64_t slabSlices) : state_(s
     s.all = image.values.data();
     s.checked = true;
     s.chooseSlab(slabSlices);
+}
+
+ImageStream::ImageStream(const VoxelView& view, const ImageReadOptions& options, std::int64_t slabSlices)
+    : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.name = kViewName;
+    s.source = openView(view);
+    if (options.nan) s.source = fillNan(std::move(s.source), *options.nan);
+    s.header = imageOf(s.source->header);
+    s.type = heldType(*s.source);
+    const bool asRead = liesAsRead(view);
+    s.chooseSlab(slabSlices > 0 || asRead ? slabSlices
+                                          : std::max(kFewestGathered, kSlabBytes / s.sliceBytes()));
+    if (!asRead || s.type != s.source->header.type || !s.source->native) return;
+    s.source.reset();
+    s.all = view.data;
 }
 
 ImageStream::~ImageStream() = default;

@@ -43,6 +43,10 @@ class ImageStream {
                          std::int64_t slabSlices = 0);
     // Over an image in memory, which must outlive the stream.
     explicit ImageStream(const Image& image, std::int64_t slabSlices = 0);
+    // Over voxels in memory of the caller's, which must outlive the stream; they are gathered a slab at a time unless they lie
+    // as they are handed out. Of the options only `nan` has a meaning.
+    explicit ImageStream(const VoxelView& view, const ImageReadOptions& options = {},
+                         std::int64_t slabSlices = 0);
     ~ImageStream();
     ImageStream(ImageStream&&) noexcept;
     ImageStream& operator=(ImageStream&&) noexcept;

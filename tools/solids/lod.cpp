@@ -104,13 +104,6 @@ void finish(const Ladder& ladder, const LadderFiles& files, const std::string& u
     if (copy) copy->commit();
 }
 
-// Of the triangles of a mesh, or of level 0.
-double share(const std::string& text) {
-    const double ratio = positive(text);
-    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
-    return ratio;
-}
-
 class Lod : public Command {
   public:
     Lod();
@@ -118,8 +111,6 @@ class Lod : public Command {
     int run(Console& console) override;
 
   private:
-    void declareLevels();
-    void declareBudgets();
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
     std::optional<GlbLods> lodsOf(const Solid& solid) const;
     // Nothing without --view.
@@ -153,7 +144,7 @@ Lod::Lod()
            "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
            "leaves the folder as it was."}) {
     declareOutput("the folder that gets one mesh a level, and report.json");
-    declareLevels();
+    declareLevels(options_, levels_);
     declareFormat(options_, format_);
     space_.declare(options_);
     options_.value("--glb-lods", "quantized|float", "",
@@ -165,45 +156,11 @@ Lod::Lod()
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
-    declareBudgets();
+    declareBudgets(options_, budgets_, levels_);
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
     declareQuiet();
-}
-
-void Lod::declareLevels() {
-    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
-                   [this](const std::string& v) { levels_.levels = range(v); });
-    options_.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
-                   [this](const std::string& v) { levels_.steps = range(v); });
-}
-
-void Lod::declareBudgets() {
-    options_.value(
-        "--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
-        [this](const std::string& v) {
-            budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
-        });
-    options_.value("--ratio", "R,R,...", "",
-                   "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
-                   "%): name_RR",
-                   [this](const std::string& v) { budgets_.ratios = list(v, share); });
-    options_.value("--tolerance", "D,D,...", "",
-                   "the fewest triangles that stay within D (world units) of the mesh that was read, of "
-                   "level 0 for images, both ways: name_DD",
-                   [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value(
-        "--max-genus", "N", "",
-        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
-        [this](const std::string& v) { levels_.maxGenus = integer(v, 0, kHuge); });
-    options_.value(
-        "--max-parts", "N", "",
-        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
-        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
-    options_.value("--min-component", "VOLUME", "",
-                   "budgets: only from steps without components smaller than that (world units cubed)",
-                   [this](const std::string& v) { budgets_.minComponent = positive(v); });
 }
 
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
