@@ -188,11 +188,16 @@ class BandLeaves {
 }  // namespace
 
 openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress) {
+                                          const Progress& progress,
+                                          const std::function<void(std::int64_t)>& allow) {
     const NodeCollection nodes = nodesFromImage(stream, solid, progress);
     const Image& image = stream.header();
     const ImageExcess excess(image, solid);
-    auto grid = bandGrid(bandAround(nodes, reachOf(halfWidth)));
+    auto grid = [&] {
+        const openvdb::MaskTree band = bandAround(nodes, reachOf(halfWidth));
+        if (allow) allow(static_cast<std::int64_t>(band.activeVoxelCount()));
+        return bandGrid(band);
+    }();
     if (!grid->empty()) {
         const BandLeaves leaves(grid->tree(), image);
         stream.pass("reading", progress, [&](const Slab& slab) { leaves.fill(slab, excess); });
