@@ -78,7 +78,7 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
             const StageClock::Scope scope(clock, "distance");
             return samples.distance();
         }();
-        allow(kBytesPerBandPoint, grid->activeVoxelCount());
+        allow(samples.bytesPerBandPoint, grid->activeVoxelCount());
         const StageClock::Scope scope(clock, "fit");
         DistanceFitOptions options = fitting.distance;
         if (samples.walls)

@@ -183,7 +183,8 @@ SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions
         seen.statistics = statisticsOf(stream, seen.label, progress);
         if (options.label) requireLabel(seen.statistics, name, *options.label);
     }
-    for (const std::string& warning : stream.header().warnings) progress.say(warning);
+    for (const std::string& warning : stream.header().warnings)
+        progress.say(fmt::format("{}: {}", name, warning));
     seen.stream.emplace(std::move(stream));
     return seen;
 }
@@ -209,13 +210,18 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
         seen.stream.reset();
         return result;
     };
+    const double limit = memoryLimit(options.maxMemory);
+    const std::string remedy = "crop or downsample it";
+    const auto allow = [&](std::int64_t points) {  // voxels that had to be decoded are still there
+        const double bytes = kBytesPerSweptPoint * static_cast<double>(points);
+        refuseTooLarge(name, bytes + static_cast<double>(seen.stream->bytesKept()), limit, remedy);
+    };
     const auto distance = [&] {
-        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress);
+        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress, allow);
         seen.stream.reset();
         return grid;
     };
-    fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
-        clock);
+    fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint}, limit, remedy, progress, clock);
     if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
         solid.input.volume = volumeInside(*solid.field->shape);
     requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");

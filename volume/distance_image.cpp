@@ -34,6 +34,28 @@ openvdb::MaskTree bandAround(const NodeCollection& nodes, int reach) {
     return band;
 }
 
+// A lattice point on the iso value is outside. The sweep would take it for inside, and put a surface around
+// one that no inside point is beside; the smallest number below zero it takes as meant, and as distance 0
+// where an inside point is next to it.
+float strictlySigned(float excess) { return excess == 0 ? -std::numeric_limits<float>::min() : excess; }
+
+// What the sweep is given. It tells steep from flat by absolute numbers, so that values of 1e-30 lost where between two lattice
+// points the surface is, and a ball 5 % of its volume. A power of two brings the largest to 1 or more: nothing else changes.
+void makeSweepable(openvdb::FloatTree& excess) {
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(excess);
+    std::vector<float> largest(leaves.leafCount());
+    leaves.foreach ([&largest](const FloatLeaf& leaf, std::size_t n) {
+        for (auto value = leaf.cbeginValueOn(); value; ++value)
+            largest[n] = std::max(largest[n], std::abs(*value));
+    });
+    const float most = *std::max_element(largest.begin(), largest.end());
+    const double scale = most > 0 && most < 1 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
+    leaves.foreach ([scale](FloatLeaf& leaf, std::size_t) {
+        for (auto value = leaf.beginValueOn(); value; ++value)
+            value.setValue(strictlySigned(static_cast<float>(scale * double(*value))));
+    });
+}
+
 // Distances of the band's lattice points, in voxels, to the zero set of `excess` (value - iso: positive
 // inside), whose sign is that of `signs`; clamped to ±halfWidth; every other place ±halfWidth. sweep:
 // FastSweeping puts the points beside the surface at 1/sqrt(sum 1/d_a^2), d_a the distance to the crossing
@@ -41,6 +63,7 @@ openvdb::MaskTree bandAround(const NodeCollection& nodes, int reach) {
 openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeCollection& signs,
                                   double halfWidth, const Progress& progress) {
     progress("distances", 0.3);
+    if (excess->tree().leafCount() > 0) makeSweepable(excess->tree());
     auto distance = openvdb::tools::fogToSdf(*excess, 0.0f);
     excess.reset();
     progress("distances", 0.8);
@@ -73,11 +96,6 @@ openvdb::FloatGrid::Ptr sweepBand(openvdb::FloatGrid::Ptr excess, const NodeColl
     progress("distances", 1);
     return result;
 }
-
-// A lattice point on the iso value is outside. The sweep would take it for inside, and put a surface around
-// one that no inside point is beside; the smallest number below zero it takes as meant, and as distance 0
-// where an inside point is next to it.
-float strictlySigned(float excess) { return excess == 0 ? -std::numeric_limits<float>::min() : excess; }
 
 // A grid on the band, whose values are still to be set.
 openvdb::FloatGrid::Ptr bandGrid(const openvdb::MaskTree& band) {
@@ -124,7 +142,7 @@ class ImageExcess {
         for (int a = 0; a < 3; ++a) beyond = beyond || c[a] < -margin_ || c[a] >= size_[a] + margin_;
         // The cap: beyond the border the nearest voxel is mirrored at the iso value, so a solid that touches
         // the border ends half a voxel outside it.
-        return strictlySigned(static_cast<float>(beyond && excess > 0 ? -excess : excess));
+        return static_cast<float>(beyond && excess > 0 ? -excess : excess);
     }
 
   private:
@@ -188,11 +206,16 @@ class BandLeaves {
 }  // namespace
 
 openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress) {
+                                          const Progress& progress,
+                                          const std::function<void(std::int64_t)>& allow) {
     const NodeCollection nodes = nodesFromImage(stream, solid, progress);
     const Image& image = stream.header();
     const ImageExcess excess(image, solid);
-    auto grid = bandGrid(bandAround(nodes, reachOf(halfWidth)));
+    auto grid = [&] {
+        const openvdb::MaskTree band = bandAround(nodes, reachOf(halfWidth));
+        if (allow) allow(static_cast<std::int64_t>(band.activeVoxelCount()));
+        return bandGrid(band);
+    }();
     if (!grid->empty()) {
         const BandLeaves leaves(grid->tree(), image);
         stream.pass("reading", progress, [&](const Slab& slab) { leaves.fill(slab, excess); });
@@ -241,7 +264,7 @@ openvdb::FloatGrid::Ptr distanceFromLevelSet(const openvdb::FloatGrid& levelSet,
     band.foreach ([&](FloatLeaf& leaf, std::size_t) {
         const ConstAccessor<openvdb::FloatTree> accessor(tree);
         for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
-            leaf.setValueOnly(i, strictlySigned(isoValue - accessor.getValue(leaf.offsetToGlobalCoord(i))));
+            leaf.setValueOnly(i, isoValue - accessor.getValue(leaf.offsetToGlobalCoord(i)));
     });
     fillBeside(excess->tree(), nodes);
     auto result = sweepBand(std::move(excess), nodes, halfWidth, progress);

@@ -15,8 +15,12 @@ namespace isowave {
 // openvdb::tools::FastSweeping. Throws InputError as linearTransform() does, and as ImageStream::pass() does.
 // Of a stream the voxels are read twice: once for the signs, once for the values in the band around the
 // surface.
+// allow: is told, between the two, how many lattice points the sweep will work on, about kBytesPerSweptPoint each, and
+// throws where that is too many.
+inline constexpr double kBytesPerSweptPoint = 60;  // seen: 58 for a ball 400 voxels across in 480^3
 openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress = {});
+                                          const Progress& progress = {},
+                                          const std::function<void(std::int64_t points)>& allow = {});
 openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
                                           const Progress& progress = {});
 

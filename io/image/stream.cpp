@@ -206,6 +206,9 @@ void ImageStream::takeAsMask(std::vector<float> values) {
 const Image& ImageStream::header() const { return state_->header; }
 std::int64_t ImageStream::slabSlices() const { return state_->slabSlices; }
 bool ImageStream::isInFile() const { return !state_->all && !state_->keep; }
+std::int64_t ImageStream::bytesKept() const {
+    return state_->keep ? state_->sliceBytes() * state_->header.size[2] : 0;
+}
 
 void ImageStream::pass(std::string_view stage, const Progress& progress,
                        const std::function<void(const Slab&)>& each,

@@ -61,6 +61,8 @@ class ImageStream {
     std::int64_t slabSlices() const;
     // False when all voxels are in memory.
     bool isInFile() const;
+    // Bytes of the voxels that the stream itself keeps in memory, once it has been passed over.
+    std::int64_t bytesKept() const;
 
     // One pass: each(slab) for every slab, by several threads at once, a batch of slabs at a time; after a
     // batch, done(z) on the calling thread, z the number of slices that are behind.
