@@ -2,7 +2,7 @@
 // and uses what it finds. Results never depend on it.
 #pragma once
 
-namespace isowave::wavelets {
+namespace isowave {
 
 // Doubles in one register: SSE2 or whatever else the compiler takes for granted; AVX2; AVX-512.
 enum class Vectors { two, four, eight };
@@ -38,4 +38,4 @@ inline Vectors widestVectors() {
 
 #define ISOWAVE_INLINE [[gnu::always_inline]] inline
 
-}  // namespace isowave::wavelets
+}  // namespace isowave
