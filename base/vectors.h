@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace isowave::wavelets {
+namespace isowave {
 
 // Doubles in one register: SSE2 or whatever else the compiler takes for granted; AVX2; AVX-512.
 enum class Vectors { two, four, eight };
@@ -44,4 +44,4 @@ inline Vectors widestVectors() {
 
 #define ISOWAVE_INLINE [[gnu::always_inline]] inline
 
-}  // namespace isowave::wavelets
+}  // namespace isowave
