@@ -213,7 +213,7 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     const double limit = memoryLimit(options.maxMemory);
     const std::string remedy = "crop or downsample it";
     const auto allow = [&](std::int64_t points) {  // voxels that had to be decoded are still there
-        const double bytes = kBytesPerSweptPoint * static_cast<double>(points);
+        const double bytes = kBytesPerLeafPoint * static_cast<double>(points);
         refuseTooLarge(name, bytes + static_cast<double>(seen.stream->bytesKept()), limit, remedy);
     };
     const auto distance = [&] {
