@@ -6,16 +6,25 @@
 #include <cmath>
 
 #include "isowave/error.h"
+#include "lod/option_checks.h"
 
 namespace isowave::lod {
 namespace {
 
-constexpr double kFewestTriangles = 4;  // of a closed mesh
+constexpr std::int64_t kFewestTriangles = 4;  // of a closed mesh
 
 }  // namespace
 
 void checkBudgets(const BudgetOptions& options, bool openBorder) {
     if (!options.any()) return;
+    for (const std::int64_t n : options.triangles) requireAtLeast("--triangles", n, kFewestTriangles);
+    requirePositive("--ratio", options.ratios);
+    for (const double ratio : options.ratios)
+        if (ratio > 1)
+            throw UsageError(fmt::format("--ratio: {:g} is more than 1, which is all triangles", ratio));
+    requirePositive("--tolerance", options.tolerances);
+    requirePositive("--min-component", options.minComponent);
+    requireAtLeast("--max-genus", options.maxGenus, 0);
     if (openBorder)
         throw UsageError("budgets and limits on the topology need closed meshes; leave --open-border out");
     requireSimplifier("a budget (--triangles, --ratio, --tolerance, --max-genus, --min-component)");
@@ -56,7 +65,7 @@ BudgetLevel Budgets::made(const Asked& asked, BudgetSolver& solver, const Ladder
     const double begin = clock.secondsSoFar();
     Budget budget = asked.budget;
     if (asked.ratio > 0)
-        budget.value = std::max(kFewestTriangles,
+        budget.value = std::max(static_cast<double>(kFewestTriangles),
                                 std::round(asked.ratio * static_cast<double>(wholeTriangles_.value_or(0))));
     // What is within D - d of level 0, which is within d of the input, is within D of the input.
     if (budget.kind == Budget::Kind::distance) budget.value -= level0ToInput_.value_or(0);

@@ -8,6 +8,7 @@
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "lod/memory.h"
+#include "lod/option_checks.h"
 #include "lod/source.h"
 #include "volume/distance.h"
 #include "volume/leaf_words.h"
@@ -46,6 +47,9 @@ Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
 }
 
 void checkFitOptions(const SolidOptions& options) {
+    requirePositive("--half-width", options.halfWidth);
+    requirePositive("--band", options.band);
+    requirePositive("--max-memory", options.maxMemory);
     const DistanceFitOptions defaults;
     const double halfWidth = options.halfWidth.value_or(defaults.halfWidth),
                  band = options.band.value_or(defaults.band);

@@ -11,6 +11,7 @@
 #include "hold/hold.h"
 #include "hold/limit_level.h"
 #include "isowave/error.h"
+#include "lod/option_checks.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
@@ -41,6 +42,10 @@ constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are 
 constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
+    requireRefine(options.refine.value_or(1));
+    requireAtLeast("--relax", options.relax, 0);
+    requireAtLeast("--max-genus", options.maxGenus, 0);
+    requireAtLeast("--max-parts", options.maxParts, 1);
     if (options.preserveVolume && options.hold == Holding::shift)
         throw UsageError(
             "--preserve-volume and --hold shift exclude each other: each chooses the iso-value of a level");

@@ -241,7 +241,7 @@ struct LadderVisitor {
     std::function<void()> beforeMeasuring = {};
 };
 
-// Throws UsageError for options that exclude each other, InputError where the solid has no surface or does not reach
+// Throws UsageError for options that exclude each other or have no such value, InputError where the solid has no surface or does not reach
 // the first level asked for, Cancelled.
 ISOWAVE_EXPORT Ladder makeLadder(Solid solid, const LevelOptions& options = {},
                                  const LadderVisitor& visitor = {}, const Progress& progress = {});
@@ -265,7 +265,7 @@ ISOWAVE_EXPORT std::vector<LevelReport> describeLevels(const Pyramid& pyramid,
 // Whether a level can only be made beside level 0: a pyramid's file must be read as a whole then.
 ISOWAVE_EXPORT bool needsLevel0(const LevelOptions& options);
 
-// Throws UsageError for options that exclude each other, before anything is read.
+// Throws UsageError for options that exclude each other and ranges that end before they begin, before anything is read.
 ISOWAVE_EXPORT void checkRanges(const LevelOptions& options);
 
 }  // namespace isowave

@@ -21,7 +21,7 @@ HOLD = ("hold_tests", "LevelHold*:Hold*")
 
 # (tests, file, from, to)
 EDITS = [
-    (INTERVAL, "wavelets/interval/interval.cpp", "y[kFirstFineRow - 1] = left;", "y[kFirstFineRow - 1] = right;"),
+    (INTERVAL, "wavelets/interval/interval.cpp", "y[kFirstFineRow - 1] = left;", "y[kFirstFineRow - 1] = 2 * left;"),
     (INTERVAL, "wavelets/interval/interval.cpp", "y[kLeftRow] = left;", "y[kLeftRow] = 0 * left;"),
     (INTERVAL, "wavelets/interval/interval.cpp", "detail[k] = y[kFirstDetailRow + 2 * k];",
      "detail[k] = y[kFirstDetailRow + 2 * (n - 1 - k)];"),
@@ -43,12 +43,12 @@ EDITS = [
     (INTERVAL, "wavelets/interval/matrices.cpp", "return {2, 10};", "return {1, 11};"),
     (INTERVAL, "wavelets/interval/matrices.cpp", "line.head(kAccessory).sum()", "line.head(kAccessory - 1).sum()"),
     (INTERVAL, "wavelets/interval/matrices.cpp", "- inner * knownOutside", "+ inner * knownOutside"),
-    (INTERVAL, "wavelets/interval/batch.cpp", "used[lane < lanes ? lane : 0]", "used[0]"),
+    (INTERVAL, "wavelets/interval/batch.cpp", "used[lane < lanes ? lane : 0]", "used[lane < lanes ? (lane ^ 1) % lanes : 0]"),
     (INTERVAL, "wavelets/interval/batch.cpp", "batch.left[lane", "batch.right[lane"),
     (INTERVAL, "wavelets/interval/batch.cpp", "rows[i] = std::abs(rows[i])", "rows[i] = rows[i]"),
     (INTERVAL, "wavelets/interval/batch.cpp", "if (n > kShort) std::fill_n", "if (n < 0) std::fill_n"),
 
-    (TABLE, "polygonize/cell_table.cpp", "2 * (low >> v & 1)", "2 * (low >> u & 1)"),
+    (TABLE, "polygonize/cell_table.cpp", "2 * (low >> v & 1)", "1 * (low >> v & 1)"),
     (TABLE, "polygonize/cell_table.cpp", "&& inside(c[0]) != inside(c[1])", ""),
     (TABLE, "polygonize/cell_table.cpp", "if (joined) last = k + 3;", "if (joined) last = k + 1;"),
     (TABLE, "polygonize/cell_table.cpp", "signs.isJoined(face) ? 0 : 1;", "signs.isJoined(face) ? 1 : 0;"),

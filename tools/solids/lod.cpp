@@ -1,6 +1,11 @@
 // isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once.
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -15,6 +20,7 @@
 #include "tools/console.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
@@ -89,6 +95,36 @@ std::string unitShown(const Solid& solid) {
     return solid.space() == Space::unspecified ? "" : " [mm]";
 }
 
+// Meshes that the folder's own report.json names, and this run does not make: they would pass for its levels.
+std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFiles& files) {
+    std::ifstream in(out.folder() / kReport);
+    const Json before = Json::parse(in, nullptr, /*allow_exceptions*/ false);
+    std::vector<std::string> left;
+    for (const char* key : {"levels", "budgets"}) {
+        if (!before.is_object() || !before.contains(key)) continue;
+        for (const Json& entry : before[key]) {
+            if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) continue;
+            const auto name = entry["file"].get<std::string>();
+            const auto isOf = [&](const std::vector<std::string>& made) {
+                return std::find(made.begin(), made.end(), name) != made.end();
+            };
+            std::error_code ignored;
+            if (!isOf(files.levels) && !isOf(files.budgets) &&
+                std::filesystem::is_regular_file(out.folder() / name, ignored))
+                left.push_back(name);
+        }
+    }
+    return left;
+}
+
+void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, Console& console) {
+    const std::vector<std::string> left = leftFromBefore(out, files);
+    if (left.empty()) return;
+    console.say(fmt::format("{}: {} of an earlier run {} there; this run has no such mesh",
+                            out.folder().string(), fmt::join(left, ", "),
+                            left.size() == 1 ? "stays" : "stay"));
+}
+
 // What can fail for want of room comes first; then only names change.
 void finish(const Ladder& ladder, const LadderFiles& files, const std::string& unit, bool toStdout,
             AtomicFile* copy, OutputFolder& out, Console& console) {
@@ -98,6 +134,7 @@ void finish(const Ladder& ladder, const LadderFiles& files, const std::string& u
     file.commit();
     if (copy) writeWhole(*copy, json);
     console.progress().check();
+    tellOfWhatIsLeft(out, files, console);
     console.print(toStdout ? json : textOf(ladder, files, unit));
     console.flush();
     out.commit();
