@@ -15,6 +15,8 @@ Solid::State openImage(const std::filesystem::path& path, const SolidOptions& op
                        const Progress& progress, StageClock& clock);
 Solid::State openImage(const Image& image, const SolidOptions& options, const Progress& progress,
                        StageClock& clock);
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock);
 
 // What openImage() goes by, of an image that was looked at once.
 struct ImagePlanned {

@@ -101,6 +101,7 @@ class Command {
     Description description_;
     std::optional<OutputFile> jsonFolders_;
     std::optional<AtomicFile> jsonFile_;
+    bool readyToTell_ = false;
 
   protected:
     OptionList options_;
@@ -117,8 +118,12 @@ class Command {
     bool jsonToFile() const { return json_ && *json_ != "-"; }
     // Finds out at once whether the file of --json can be written, before there are other results. Throws OperationError.
     void openJson();
+    // For commands that have other results: call it before the first of them takes its place. All that may still stop the
+    // command, a wish or a disk without room for --json's file, stops it here; tell() then only renames and prints. Throws
+    // Cancelled, OperationError.
+    void readyToTell(Console& console, const std::string& json);
     // What the command has to tell: `text` to standard output and, with --json, `json` to its file or, for -, in place of the
-    // text. Nothing is told once a stop was asked for. Throws OperationError.
+    // text. Does what readyToTell() does where nobody has called it.
     void tell(Console& console, const std::string& text, const std::string& json);
 };
 

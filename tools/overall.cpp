@@ -12,7 +12,8 @@ struct StageShare {
     std::string_view stage;
     double begin, end;
 };
-// Where in a run of `isowave lod` a stage begins and ends; bench/whole's inputs differ by a factor of two around this.
+// Where in a run of `isowave lod` a stage begins and ends, roughly: inputs differ, and what the bar needs is that it never goes
+// back and never stands still for long.
 constexpr StageShare kStages[] = {
     {"reading", 0.00, 0.05},   {"repairing", 0.05, 0.08},           {"finding the inside", 0.08, 0.12},
     {"distances", 0.08, 0.35}, {"measuring distances", 0.12, 0.35}, {"walls", 0.35, 0.40},

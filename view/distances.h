@@ -12,7 +12,8 @@
 namespace isowave::view {
 
 // One-sided, in world units. Meshes are sampled at the corners and the centroids of their triangles, and of a triangle of area
-// A the corners weigh A/12 and the centroid 9A/12, as in isowave/measure.h without a spacing: rms and max are what report.json
+// A the corners weigh A/12 and the centroid 9A/12, as in isowave/measure.h without a spacing: rms and max are, but for the
+// sample that is taken there, what report.json
 // calls rms_to_level0 and max_to_level0. Lines are sampled at the ends (L/6) and the middle (4L/6) of segments of length L.
 struct DistanceSummary {
     static constexpr int kBins = 48;

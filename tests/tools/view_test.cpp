@@ -53,12 +53,11 @@ TEST(View, OfAFolderHasTheReportsNumbers) {
         EXPECT_EQ(facts["rms"], level["rms_to_level0"]);
         EXPECT_EQ(facts["max"], level["max_to_level0"]);
         if (i == 0) continue;
-        EXPECT_NEAR(
-            document["levels"][i]["distance"]["rms"].get<double>() / level["rms_to_level0"].get<double>(), 1,
-            1e-5);
-        EXPECT_NEAR(
-            document["levels"][i]["distance"]["max"].get<double>() / level["max_to_level0"].get<double>(), 1,
-            1e-5);
+        // The page's own sample, which colours and histogram are made of, is not the report's: it takes no more than the
+        // corners and centroids of large triangles, too.
+        const auto& own = document["levels"][i]["distance"];
+        EXPECT_NEAR(own["rms"].get<double>() / level["rms_to_level0"].get<double>(), 1, 0.15);
+        EXPECT_NEAR(own["max"].get<double>() / level["max_to_level0"].get<double>(), 1, 0.1);
     }
 }
 

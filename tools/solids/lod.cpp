@@ -1,9 +1,11 @@
 // isowave lod INPUT... -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once. Several inputs get a folder each, one after another.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -19,6 +21,7 @@
 #include "tools/console.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/dry_run_text.h"
 #include "tools/solids/mesh_names.h"
@@ -102,6 +105,36 @@ struct Made {
     std::string unit;  // as unitShown() has it
 };
 
+// Meshes that the folder's own report.json names, and this run does not make: they would pass for its levels.
+std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFiles& files) {
+    std::ifstream in(out.folder() / kReport);
+    const Json before = Json::parse(in, nullptr, /*allow_exceptions*/ false);
+    std::vector<std::string> left;
+    for (const char* key : {"levels", "budgets"}) {
+        if (!before.is_object() || !before.contains(key)) continue;
+        for (const Json& entry : before[key]) {
+            if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) continue;
+            const auto name = entry["file"].get<std::string>();
+            const auto isOf = [&](const std::vector<std::string>& made) {
+                return std::find(made.begin(), made.end(), name) != made.end();
+            };
+            std::error_code ignored;
+            if (!isOf(files.levels) && !isOf(files.budgets) &&
+                std::filesystem::is_regular_file(out.folder() / name, ignored))
+                left.push_back(name);
+        }
+    }
+    return left;
+}
+
+void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, const Progress& progress) {
+    const std::vector<std::string> left = leftFromBefore(out, files);
+    if (left.empty()) return;
+    progress.say(fmt::format("{}: {} of an earlier run {} there; this run has no such mesh",
+                             out.folder().string(), fmt::join(left, ", "),
+                             left.size() == 1 ? "stays" : "stay"));
+}
+
 void writeReport(const std::string& json, OutputFolder& out) {
     AtomicFile file(out.place(kReport));
     writeWhole(file, json);
@@ -132,17 +165,11 @@ void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out
     writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
+    tellOfWhatIsLeft(out, made.files, console.progress());
     console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
     console.flush();
     out.commit();
     if (copy) copy->commit();
-}
-
-// Of the triangles of a mesh, or of level 0.
-double share(const std::string& text) {
-    const double ratio = positive(text);
-    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
-    return ratio;
 }
 
 class Lod : public Command {
@@ -153,8 +180,6 @@ class Lod : public Command {
     int run(Console& console) override;
 
   private:
-    void declareLevels();
-    void declareBudgets();
     void check();
     int runOne(Console& console);
     int runParts(Console& console);
@@ -203,7 +228,7 @@ Lod::Lod()
     options_.flag("--dry-run",
                   "make nothing; say voxels, memory, levels, and how many voxels thin the thinnest walls are",
                   dryRun_);
-    declareLevels();
+    declareLevels(options_, levels_);
     declareFormat(options_, format_);
     space_.declare(options_);
     options_.value("--glb-lods", "quantized|float", "",
@@ -215,44 +240,11 @@ Lod::Lod()
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
-    declareBudgets();
+    declareBudgets(options_, budgets_, levels_);
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
     declareTalk();
-}
-
-void Lod::declareLevels() {
-    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
-                   [this](const std::string& v) { levels_.levels = range(v); });
-    options_.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
-                   [this](const std::string& v) { levels_.steps = range(v); });
-}
-
-void Lod::declareBudgets() {
-    options_.value(
-        "--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
-        [this](const std::string& v) {
-            budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
-        });
-    options_.value("--ratio", "R,R,...", "",
-                   "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
-                   "%): name_RR",
-                   [this](const std::string& v) { budgets_.ratios = list(v, share); });
-    options_.value("--tolerance", "D,D,...", "",
-                   "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
-                   [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value(
-        "--max-genus", "N", "",
-        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
-        [this](const std::string& v) { levels_.maxGenus = integer(v, 0, kHuge); });
-    options_.value(
-        "--max-parts", "N", "",
-        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
-        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
-    options_.value("--min-component", "VOLUME", "",
-                   "budgets: only from steps without components smaller than that (world units cubed)",
-                   [this](const std::string& v) { budgets_.minComponent = positive(v); });
 }
 
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
@@ -355,6 +347,7 @@ PartStory Lod::runPart(const Part& part, const Progress& progress) const {
         const Made made = make(part.input, names, out, progress);
         writeReport(jsonOf(made.ladder, made.files), out);
         progress.check();
+        tellOfWhatIsLeft(out, made.files, progress);
         const PartStory story = storyOf(made, out);
         out.commit();
         return story;
