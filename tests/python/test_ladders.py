@@ -209,9 +209,8 @@ def test_every_option_of_the_command_is_an_argument():
     shown = command("lod", "--help").stdout
     names = {name.replace("-", "_") for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
     assert len(names) > 30 and names - parameters == {
-        "output", "format", "json", "view", "glb_lods",
-        "quiet", "verbose", "progress", "dry_run", "list",
-    }
+        "output", "format", "json", "view", "glb_lods", "quiet", "verbose", "dry_run", "list",
+    }  # fmt: skip
     of_curves = {name[2:].replace("-", "_") for name in _native.curve_option_names()}
     assert of_curves <= set(inspect.signature(plane.curves).parameters)
     given = set(inspect.signature(isowave.analyse).parameters)
