@@ -279,7 +279,7 @@ def dicoms():
         pieces += item(struct.pack("<16I", 2, 64, 64 + len(high), *[0] * 13) + high + low)
     pixels = struct.pack("<HH2sHI", 0x7FE0, 0x0010, b"OB", 0, 0xFFFFFFFF) + item(b"") + pieces
     pixels += struct.pack("<HHI", 0xFFFE, 0xE0DD, 0)
-    yield "dicom/rle.dcm", dicom(pixels=pixels, syntax="1.2.840.10008.1.2.5")
+    yield "dicom-compressed/rle.dcm", dicom(pixels=pixels, syntax="1.2.840.10008.1.2.5")
 
 
 # ---- pictures
@@ -395,7 +395,7 @@ def own():
 # ---- files of tests/data
 
 FROM_DATA = {"stl": ["broken_stl/*.stl"], "off": ["meshes/pinion.off"], "obj": ["subdiv/catmark_torus.obj", "meshes/*.obj"],
-             "dicom": ["dicom_damaged/*.dcm"], "geojson": ["curves2d/africa.geojson"], "png": ["curves2d/*.png"],
+             "dicom-compressed": ["dicom_damaged/*.dcm"], "dicom": ["dicom_damaged/*.dcm"], "geojson": ["curves2d/africa.geojson"], "png": ["curves2d/*.png"],
              "points": ["coast/iceland.txt"], "nrrd": ["ct/cranium_crop.nrrd"]}
 
 

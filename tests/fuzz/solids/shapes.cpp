@@ -22,11 +22,14 @@ void requireSound(const TriangleMesh& mesh) {
 
 // Every known control point of a, in b.
 void requireEqual(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b, double tolerance) {
-    require(a.tree().hasSameTopology(b.tree()), "the pyramid restores other control points");
+    require(a.activeVoxelCount() == b.activeVoxelCount(), "the pyramid restores other control points");
     const auto other = b.getConstAccessor();
-    for (auto c = a.cbeginValueOn(); c; ++c)
-        require(std::abs(double(*c) - double(other.getValue(c.getCoord()))) <= tolerance,
-                "the pyramid does not restore a control point");
+    for (auto c = a.cbeginValueOn(); c; ++c) {
+        float value = 0;
+        require(other.probeValue(c.getCoord(), value), "the pyramid does not restore a control point");
+        require(std::abs(double(*c) - double(value)) <= tolerance,
+                "a control point comes back with another value");
+    }
 }
 
 void checkPyramid(const Solid& solid, Bytes& bytes) {
