@@ -7,6 +7,7 @@
 #ifdef ISOWAVE_WITH_MIMALLOC
 #include <mimalloc.h>
 #elif defined(__GLIBC__)
+#include <gnu/libc-version.h>
 #include <malloc.h>
 #endif
 
@@ -61,6 +62,18 @@ void releaseFreedMemory() {
     mi_collect(true);
 #elif defined(__GLIBC__)
     malloc_trim(0);
+#endif
+}
+
+std::string heapName() {
+#ifdef ISOWAVE_WITH_MIMALLOC
+    const int version = mi_version();  // 209: 2.0.9
+    return "mimalloc " + std::to_string(version / 100) + "." + std::to_string(version / 10 % 10) + "." +
+           std::to_string(version % 10);
+#elif defined(__GLIBC__)
+    return std::string("glibc ") + gnu_get_libc_version();
+#else
+    return "the system's";
 #endif
 }
 

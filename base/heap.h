@@ -2,6 +2,8 @@
 // of its own (isowave_heap) that programs link.
 #pragma once
 
+#include <string>
+
 namespace isowave {
 
 // A job makes and drops hundreds of megabytes of leaves of 2 KB a step. Programs that link this allocate with
@@ -15,5 +17,8 @@ void setUpHeap();
 // Gives freed memory that was kept back to the system: for a stage whose blocks have other sizes than what
 // the stages before it freed.
 void releaseFreedMemory();
+
+// "mimalloc 2.0.9", "glibc 2.36".
+std::string heapName();
 
 }  // namespace isowave

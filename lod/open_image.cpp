@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/image/view.h"
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
@@ -182,9 +183,14 @@ SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions
         seen.statistics = statisticsOf(stream, seen.label, progress);
         if (options.label) requireLabel(seen.statistics, name, *options.label);
     }
-    for (const std::string& warning : stream.header().warnings) progress.say(warning);
+    for (const std::string& warning : stream.header().warnings)
+        progress.say(fmt::format("{}: {}", name, warning));
     seen.stream.emplace(std::move(stream));
     return seen;
+}
+
+ImageSolid shapeOf(const ImagePlan& plan, const SeenImage& seen, const SolidOptions& options) {
+    return {.iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
 }
 
 Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions& options,
@@ -201,20 +207,24 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     solid.input = reportOf(name, image, plan, seen.statistics, options);
     solid.openBorder = borderOf(solid.input);
     solid.space = Space::lps;
-    const ImageSolid shape{
-        .iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
+    const ImageSolid shape = shapeOf(plan, seen, options);
     const auto nodes = [&] {
         NodeCollection result = nodesFromImage(*seen.stream, shape, progress);
         seen.stream.reset();
         return result;
     };
+    const double limit = memoryLimit(options.maxMemory);
+    const std::string remedy = "crop or downsample it";
+    const auto allow = [&](std::int64_t points) {  // voxels that had to be decoded are still there
+        const double bytes = kBytesPerLeafPoint * static_cast<double>(points);
+        refuseTooLarge(name, bytes + static_cast<double>(seen.stream->bytesKept()), limit, remedy);
+    };
     const auto distance = [&] {
-        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress);
+        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress, allow);
         seen.stream.reset();
         return grid;
     };
-    fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
-        clock);
+    fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint}, limit, remedy, progress, clock);
     if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
         solid.input.volume = volumeInside(*solid.field->shape);
     requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
@@ -240,6 +250,24 @@ Solid::State openImage(const Image& image, const SolidOptions& options, const Pr
         return looked(ImageStream(image), "image", options, progress);
     }();
     return fitted(std::move(seen), "image", options, progress, clock);
+}
+
+ImagePlanned planImage(const std::filesystem::path& path, const SolidOptions& options,
+                       const Progress& progress) {
+    const std::string name = path.string();
+    SeenImage seen = looked(ImageStream(path, imageReadOptions(options)), name, options, progress);
+    const ImagePlan plan = planFor(seen.stream->header(), seen.statistics, name, options, progress);
+    const ImageSolid shape = shapeOf(plan, seen, options);
+    return {std::move(*seen.stream), shape, plan.kind, plan.fit};
+}
+
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock) {
+    SeenImage seen = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return looked(ImageStream(voxels, options.image), imageio::kViewName, options, progress);
+    }();
+    return fitted(std::move(seen), imageio::kViewName, options, progress, clock);
 }
 
 ImageReadOptions imageReadOptions(const SolidOptions& options) {

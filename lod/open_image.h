@@ -6,6 +6,7 @@
 #include "base/stage_clock.h"
 #include "io/image/stream.h"
 #include "lod/solid_state.h"
+#include "volume/image_solid.h"
 #include "volume/image_statistics.h"
 
 namespace isowave::lod {
@@ -14,6 +15,18 @@ Solid::State openImage(const std::filesystem::path& path, const SolidOptions& op
                        const Progress& progress, StageClock& clock);
 Solid::State openImage(const Image& image, const SolidOptions& options, const Progress& progress,
                        StageClock& clock);
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock);
+
+// What openImage() goes by, of an image that was looked at once.
+struct ImagePlanned {
+    ImageStream stream;
+    ImageSolid shape;
+    InputReport::Kind kind;
+    FitMethod fit;  // unless the options have another
+};
+ImagePlanned planImage(const std::filesystem::path& path, const SolidOptions& options,
+                       const Progress& progress);
 
 // What the readers of images are told. Throws UsageError for a headerless image whose size or type is missing.
 ImageReadOptions imageReadOptions(const SolidOptions& options);

@@ -14,6 +14,7 @@
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "lod/option_checks.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "volume/distance.h"
@@ -33,10 +34,16 @@ constexpr int kFinestRefine = 4;  // of polygonize()
 
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
+constexpr std::int64_t kFewestVoxels = 4;
+
 // The least thickness of a plate, in voxels: below it is torn by the lattice.
 constexpr double kLeastThickness = 2;
 
 void checkOptions(const SolidOptions& options) {
+    requireAtLeast("--voxels", options.voxels, kFewestVoxels);
+    requirePositive("--voxel", options.voxel);
+    requirePositive("--close-holes", options.closeHoles);
+    requirePositive("--thicken", options.thicken);
     if (options.voxel && options.voxels)
         throw UsageError("--voxel and --voxels exclude each other; give one of them");
     if (options.closeHoles && options.thicken)
@@ -182,6 +189,12 @@ bool isHeldBetween(const Solid::State& solid, const Progress& progress) {
            !polygonize(*solid.field, {.refine = kFinestRefine}, progress).triangles.empty();
 }
 
+double bandPointsOf(const TriangleMesh& mesh, double voxel, const Fitting& fitting,
+                    const SolidOptions& options) {
+    const double reach = fitting.distance.halfWidth + options.thicken.value_or(0) / 2 / voxel;
+    return estimateBandVoxels(mesh, voxel, reach);
+}
+
 Solid::State fitted(const ClosedMesh& input, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const TriangleMesh& mesh = input.loaded.mesh;
@@ -189,8 +202,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 
     const Fitting fitting = fittingOf(options, FitMethod::distance);
     const double voxel = voxelSizeFor(mesh, options, name, progress), limit = memoryLimit(options.maxMemory);
-    const double reach = fitting.distance.halfWidth + options.thicken.value_or(0) / 2 / voxel;
-    refuseTooLarge(name, kBytesPerBandPoint * estimateBandVoxels(mesh, voxel, reach), limit, kRemedy);
+    refuseTooLarge(name, kBytesPerBandPoint * bandPointsOf(mesh, voxel, fitting, options), limit, kRemedy);
     const auto transform = transformForMesh(mesh, voxel);
     Solid::State solid;
     solid.input = reportOf(input, name, voxel);
@@ -214,6 +226,8 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         signs.emplace(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
                       progress);
         putTruth(solid.input, input, voxel, points, *signs);
+        if (!input.repair.evenOdd && !signs->lines().hasOverlap())
+            solid.surface = std::make_shared<TriangleMesh>(TriangleMesh{mesh.points, mesh.triangles, {}});
     }
     const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
         if (options.walls && signs)
@@ -266,6 +280,20 @@ LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
         for (auto& n : loaded.mesh.normals) n[0] = -n[0], n[1] = -n[1];
     }
     return loaded;
+}
+
+MeshPlan planMesh(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress) {
+    checkOptions(options);
+    const std::string name = path.string();
+    ClosedMesh input = closed(loadMesh(path, progress, options.unit), name, options, progress);
+    for (const std::string& note : input.repair.notes) progress.say(note);
+    const double voxel = voxelSizeFor(input.loaded.mesh, options, name, progress);
+    MeshPlan plan;
+    plan.input = reportOf(input, name, voxel);
+    plan.bandPoints =
+        bandPointsOf(input.loaded.mesh, voxel, fittingOf(options, FitMethod::distance), options);
+    plan.mesh = std::move(input.loaded.mesh);
+    return plan;
 }
 
 Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,

@@ -22,6 +22,14 @@ struct LoadedMesh {
 LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
                     const std::optional<std::string>& unit = {});
 
+// What openMesh() goes by, of a mesh that is repaired and not yet sampled.
+struct MeshPlan {
+    TriangleMesh mesh;
+    InputReport input;      // without what the fit and the finer lattice tell
+    double bandPoints = 0;  // lattice points within the half-width, about
+};
+MeshPlan planMesh(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress);
+
 Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& options,
                       const Progress& progress, StageClock& clock);
 Solid::State openMesh(const TriangleMesh& mesh, Space space, const SolidOptions& options,

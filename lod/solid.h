@@ -12,5 +12,7 @@ enum class InputKind { image, mesh, vdb, pyramid };
 // By extension, by image.raw (headerless image) and, for .vdb, by what the file says that it is. Throws
 // InputError for a missing file or a name that tells nothing.
 InputKind kindOf(const std::filesystem::path& path, const SolidOptions& options);
+// The same, and the options suit it. Throws UsageError for one that this kind of input does not have.
+InputKind checkedKindOf(const std::filesystem::path& path, const SolidOptions& options);
 
 }  // namespace isowave::lod

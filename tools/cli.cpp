@@ -1,10 +1,13 @@
 #include "tools/cli.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "isowave/error.h"
+#include "tools/similar.h"
 
 namespace isowave::tools {
 namespace {
@@ -43,7 +46,9 @@ void takeArguments(const ParsedCommand& parsed) {
     Command& command = *parsed.command;
     const std::string name(command.name()), expected(command.description().arguments);
     const auto found = static_cast<int>(parsed.arguments.size());
-    if (found == command.argumentCount() || (expected.front() == '[' && found == 0)) {
+    const bool enough =
+        command.takesMore() ? found >= command.argumentCount() : found == command.argumentCount();
+    if (enough || (found == 0 && (expected.front() == '[' || command.hasOtherInputs()))) {
         for (const std::string& argument : parsed.arguments) {
             if (argument.empty()) throw UsageError(name + ": the name of a file is empty");
             command.arguments.emplace_back(argument);
@@ -75,7 +80,25 @@ void take(const ParsedCommand& parsed) {
         throw UsageError(std::string(parsed.command->name()) + ": -o is missing; say where the result goes");
 }
 
-void parse(CLI::App& app, int argc, const char* const* argv) {
+// The first word that looks like an option and is none of the command's.
+std::string unknownOption(const Command& command, int argc, const char* const* argv) {
+    const std::vector<std::string_view> known = command.options().names();
+    for (int i = 2; i < argc; ++i) {
+        const std::string_view word(argv[i]), name = word.substr(0, word.find('='));
+        if (name.starts_with("--") && name.size() > 2 &&
+            std::find(known.begin(), known.end(), name) == known.end())
+            return std::string(name);
+    }
+    return {};
+}
+
+[[noreturn]] void refuseOption(const Command& command, const std::string& name) {
+    const std::string help = fmt::format("isowave {} --help", command.name());
+    throw UsageError(fmt::format("there is no option {} of {}{}", name, command.name(),
+                                 suggestion(name, command.options().names(), help)));
+}
+
+void parse(const Commands& commands, CLI::App& app, int argc, const char* const* argv) {
     const bool named = argc > 1 && argv[1][0] != '-';
     const std::string help =
         "; see isowave " + (named ? std::string(argv[1]) + " " : std::string()) + "--help";
@@ -85,6 +108,9 @@ void parse(CLI::App& app, int argc, const char* const* argv) {
         const std::string text = oneLine(error.what());
         throw UsageError(text.substr(0, text.find(':')) + ": expects one value, given once" + help);
     } catch (const CLI::ParseError& error) {
+        const Command* command = named ? findCommand(commands, argv[1]) : nullptr;
+        const std::string unknown = command ? unknownOption(*command, argc, argv) : std::string();
+        if (!unknown.empty()) refuseOption(*command, unknown);
         throw UsageError(oneLine(error.what()) + help);
     }
 }
@@ -98,8 +124,12 @@ std::string namesOf(const Commands& commands) {
 // CLI11 would call every word of the line an argument that it did not expect.
 void refuseUnknownCommand(const Commands& commands, int argc, const char* const* argv) {
     if (argc < 2 || argv[1][0] == '-' || findCommand(commands, argv[1])) return;
-    throw UsageError("there is no subcommand '" + std::string(argv[1]) + "'; there are " + namesOf(commands) +
-                     "; see isowave --help");
+    std::vector<std::string_view> names;
+    for (const auto& command : commands) names.push_back(command->name());
+    const std::string_view meant = similarTo(argv[1], names);
+    throw UsageError(fmt::format("there is no subcommand '{}'{}{}", argv[1],
+                                 meant.empty() ? "; there are " + namesOf(commands) : "",
+                                 suggestion(argv[1], names, "isowave --help")));
 }
 
 }  // namespace
@@ -110,11 +140,12 @@ Invocation parseCommandLine(const Commands& commands, int argc, const char* cons
     Invocation invocation;
     app.add_flag("-h,--help", invocation.help);
     app.add_flag("--version", invocation.version);
+    app.add_flag("--verbose", invocation.verbose);
     app.require_subcommand(0, 1);
     std::vector<std::unique_ptr<ParsedCommand>> parsed;
     for (const auto& command : commands) parsed.push_back(declare(app, *command));
     refuseUnknownCommand(commands, argc, argv);
-    parse(app, argc, argv);
+    parse(commands, app, argc, argv);
     for (const auto& candidate : parsed) {
         if (!candidate->app->parsed()) continue;
         if (!candidate->help) take(*candidate);

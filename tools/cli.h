@@ -8,6 +8,7 @@ namespace isowave::tools {
 struct Invocation {
     Command* command = nullptr;  // one of `commands`; nullptr: `isowave --help` or `isowave --version`
     bool help = false, version = false;
+    bool verbose = false;  // with --version: what it is built of
 };
 
 // Throws UsageError with one line that names the argument.

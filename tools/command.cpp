@@ -32,6 +32,12 @@ void OptionList::input(std::string_view names, std::string_view help,
     inputs_.push_back(&set);
 }
 
+std::vector<std::string_view> OptionList::names() const {
+    std::vector<std::string_view> names{"--help"};
+    for (const Option& option : options_) names.push_back(option.longName());
+    return names;
+}
+
 std::vector<std::filesystem::path> OptionList::inputs() const {
     std::vector<std::filesystem::path> given;
     for (const auto* input : inputs_)
@@ -90,11 +96,16 @@ void Command::openJson() {
     jsonFile_.emplace(*json_);
 }
 
-void Command::tell(Console& console, const std::string& text, const std::string& json) {
+void Command::readyToTell(Console& console, const std::string& json) {
     console.progress().check();
     openJson();
+    if (jsonFile_) writeWhole(*jsonFile_, json);
+    readyToTell_ = true;
+}
+
+void Command::tell(Console& console, const std::string& text, const std::string& json) {
+    if (!readyToTell_) readyToTell(console, json);
     if (jsonFile_) {
-        writeWhole(*jsonFile_, json);
         jsonFile_->commit();
         jsonFolders_->commit();
     }
@@ -106,8 +117,16 @@ void Command::declareThreads() {
                    [this](const std::string& v) { threads = static_cast<int>(integer(v, 1, 4096)); });
 }
 
-void Command::declareQuiet() {
-    options_.flag("--quiet", "no progress and no remarks on standard error", quiet);
+void Command::declareTalk() {
+    options_.value("--progress", "bar|plain|none", "bar on a terminal, otherwise none",
+                   "a line that is redrawn; a line of its own for each stage, at most one a second; nothing",
+                   [this](const std::string& v) {
+                       talk.progress = choice<ProgressStyle>(v, {{"bar", ProgressStyle::bar},
+                                                                 {"plain", ProgressStyle::plain},
+                                                                 {"none", ProgressStyle::none}});
+                   });
+    options_.flag("--verbose", "at the end, seconds and memory by stage on standard error", talk.verbose);
+    options_.flag("--quiet", "no progress and no remarks on standard error", talk.quiet);
 }
 
 }  // namespace isowave::tools

@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "tools/output.h"
+#include "tools/talk.h"
 
 namespace isowave::tools {
 
@@ -47,6 +48,8 @@ class OptionList {
                 std::optional<std::filesystem::path>& set);
 
     const std::vector<Option>& all() const { return options_; }
+    // "--output", "--iso", ...: the long ones, --help with them.
+    std::vector<std::string_view> names() const;
     // The inputs whose options were given.
     std::vector<std::filesystem::path> inputs() const;
     // The results whose options were given.
@@ -61,9 +64,10 @@ class Command {
   public:
     struct Description {
         std::string_view name;
-        std::string_view arguments;  // "INPUT", "A B", "[SUBDIVISION]": one positional argument a word
-        std::string_view summary;    // one line
-        std::string_view details;    // a paragraph for --help
+        std::string_view
+            arguments;  // "INPUT", "A B", "[SUBDIVISION]", "INPUT..." (one or more): one positional argument a word
+        std::string_view summary;  // one line
+        std::string_view details;  // a paragraph for --help
     };
 
     explicit Command(const Description& description) : description_(description) {}
@@ -75,8 +79,12 @@ class Command {
     std::string_view name() const { return description_.name; }
     const OptionList& options() const { return options_; }
     int argumentCount() const;
+    // "INPUT...": or more than that.
+    bool takesMore() const { return description_.arguments.ends_with("..."); }
     // An existing file that does not begin as reports do, {"version", is not replaced by --json. Throws UsageError.
     void refuseToReplaceWhatIsNoReport() const;
+    // Whether the arguments may be left out, because an option has taken their place.
+    virtual bool hasOtherInputs() const { return false; }
     // Whether -o must be given.
     virtual bool needsOutput() const { return false; }
     bool hasOutput() const { return output_.has_value(); }
@@ -87,12 +95,13 @@ class Command {
 
     std::vector<std::filesystem::path> arguments;  // the positional ones, in order
     int threads = 0;                               // 0: all
-    bool quiet = false;
+    Talk talk;
 
   private:
     Description description_;
     std::optional<OutputFile> jsonFolders_;
     std::optional<AtomicFile> jsonFile_;
+    bool readyToTell_ = false;
 
   protected:
     OptionList options_;
@@ -103,13 +112,18 @@ class Command {
     void declareOutput(std::string_view help);
     void declareJson();
     void declareThreads();
-    void declareQuiet();
+    // --quiet, --verbose, --progress.
+    void declareTalk();
     bool jsonToStandardOutput() const { return json_ && *json_ == "-"; }
     bool jsonToFile() const { return json_ && *json_ != "-"; }
     // Finds out at once whether the file of --json can be written, before there are other results. Throws OperationError.
     void openJson();
+    // For commands that have other results: call it before the first of them takes its place. All that may still stop the
+    // command, a wish or a disk without room for --json's file, stops it here; tell() then only renames and prints. Throws
+    // Cancelled, OperationError.
+    void readyToTell(Console& console, const std::string& json);
     // What the command has to tell: `text` to standard output and, with --json, `json` to its file or, for -, in place of the
-    // text. Nothing is told once a stop was asked for. Throws OperationError.
+    // text. Does what readyToTell() does where nobody has called it.
     void tell(Console& console, const std::string& text, const std::string& json);
 };
 

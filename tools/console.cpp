@@ -1,6 +1,7 @@
 #include "tools/console.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,7 +23,20 @@ void requestStop(int signal) {
     std::signal(signal, SIG_DFL);  // the second one kills
 }
 
-constexpr auto kRefresh = std::chrono::milliseconds(100);
+constexpr auto kRefresh = std::chrono::milliseconds(100);  // of the bar
+constexpr std::chrono::seconds kPlainEvery{10},
+    kPlainLeast{1};  // between plain lines: within a stage, and at all
+
+std::size_t terminalWidth() {
+    constexpr std::size_t kUsual = 80;
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : kUsual - 1;
+}
+
+ProgressStyle styleOf(const Talk& talk, bool terminal) {
+    if (talk.progress != ProgressStyle::automatic) return talk.progress;
+    return terminal && !talk.quiet ? ProgressStyle::bar : ProgressStyle::none;
+}
 
 }  // namespace
 
@@ -32,7 +46,10 @@ void installSignalHandlers() {
     std::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG, like a full disk
 }
 
-Console::Console(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+Console::Console(const Talk& talk) : talk_(talk), terminal_(::isatty(STDERR_FILENO) != 0) {
+    talk_.progress = styleOf(talk, terminal_);
+    if (talk_.verbose) log_.emplace();
+}
 
 Console::~Console() { clearProgress(); }
 
@@ -46,15 +63,25 @@ void Console::flush() {
 }
 
 void Console::say(std::string_view line) {
-    if (quiet_) return;
+    if (talk_.quiet) return;
     waiting_ += fmt::format("isowave: {}\n", line);
-    if (terminal_) finish();
+    if (terminal_) showRemarks();
 }
 
-void Console::finish() {
+void Console::complain(std::string_view line) {
+    clearProgress();
+    std::cerr << fmt::format("isowave: {}\n", line);
+}
+
+void Console::showRemarks() {
     clearProgress();
     std::cerr << waiting_;
     waiting_.clear();
+}
+
+void Console::finish() {
+    showRemarks();
+    if (log_) std::cerr << log_->text();
 }
 
 void Console::clearProgress() {
@@ -67,21 +94,45 @@ Progress Console::progress() {
     Progress progress;
     progress.stopRequested = [] { return stopRequested.load(std::memory_order_relaxed); };
     progress.remark = [this](std::string_view line) { say(line); };
-    if (terminal_ && !quiet_)
+    if (log_ || talk_.progress != ProgressStyle::none)
         progress.report = [this](std::string_view stage, double done) { show(stage, done); };
     return progress;
+}
+
+void Console::startPart(std::size_t index, std::size_t count) {
+    const std::lock_guard lock(mutex_);
+    overall_.startPart(index, count);
 }
 
 // Called from several threads: whoever comes while another one writes has nothing to add.
 void Console::show(std::string_view stage, double done) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock.owns_lock()) return;
+    if (log_) log_->report(stage);
+    if (talk_.progress == ProgressStyle::none) return;
+    const std::optional<double> whole = overall_.at(stage, done);
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
+    const ProgressFacts facts{stage, whole.value_or(done), whole.has_value(), since.count()};
+    talk_.progress == ProgressStyle::plain ? printLine(facts) : draw(facts);
+}
+
+void Console::draw(const ProgressFacts& facts) {
     const auto now = std::chrono::steady_clock::now();
-    if (lineShown_ && now - lastShown_ < kRefresh) return;
+    if (lineShown_ && lastShown_ && now - *lastShown_ < kRefresh) return;
     lastShown_ = now;
     lineShown_ = true;
-    std::fputs(fmt::format("\r\033[K{} {:.0f} %", stage, 100 * std::clamp(done, 0.0, 1.0)).c_str(), stderr);
+    std::fputs(("\r\033[K" + barText(facts, terminalWidth())).c_str(), stderr);
     std::fflush(stderr);
+}
+
+// At most a line a second: coarse levels pass through their stages in no time.
+void Console::printLine(const ProgressFacts& facts) {
+    const auto now = std::chrono::steady_clock::now();
+    const auto least = stagePrinted_ == facts.stage ? kPlainEvery : kPlainLeast;
+    if (lastShown_ && now - *lastShown_ < least) return;
+    lastShown_ = now;
+    stagePrinted_ = facts.stage;
+    std::cerr << fmt::format("isowave: {}\n", plainText(facts));
 }
 
 }  // namespace isowave::tools

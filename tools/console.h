@@ -4,10 +4,14 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "isowave/progress.h"
+#include "tools/overall.h"
+#include "tools/stage_log.h"
+#include "tools/talk.h"
 
 namespace isowave::tools {
 
@@ -17,8 +21,7 @@ void installSignalHandlers();
 
 class Console {
   public:
-    // quiet: remarks and progress are dropped; results are not.
-    explicit Console(bool quiet);
+    explicit Console(const Talk& talk);
     ~Console();
     Console(const Console&) = delete;
     Console& operator=(const Console&) = delete;
@@ -30,23 +33,36 @@ class Console {
     // A remark (a decision, a default that was taken), one line to standard error: at once on a terminal,
     // otherwise when finish() is called, so that a run that fails leaves exactly one line there, the reason.
     void say(std::string_view line);
-    // The work is done: shows the remarks that waited.
+    // Why a part of the work failed while the rest goes on, one line to standard error at once.
+    void complain(std::string_view line);
+    // The work is done: shows the remarks that waited and, with --verbose, seconds and memory by stage.
     void finish();
     // Takes the progress line away.
     void clearProgress();
+    // The job is number `index` (from 0 on) of `count`, which the progress line takes into account.
+    void startPart(std::size_t index, std::size_t count);
 
-    // Reports to the progress line when standard error is a terminal; asks to stop after a signal; passes remarks on to say().
+    // Reports to the progress line, where there is one; asks to stop after a signal; passes remarks on to say().
     // REQUIRES: the Console outlives it.
     Progress progress();
 
   private:
+    void showRemarks();
     void show(std::string_view stage, double done);
+    void draw(const ProgressFacts& facts);
+    void printLine(const ProgressFacts& facts);
 
-    bool quiet_, terminal_;
+    using Time = std::chrono::steady_clock::time_point;
+    Talk talk_;
+    bool terminal_;
     std::string waiting_;
     std::mutex mutex_;
+    Time begin_ = std::chrono::steady_clock::now();
+    Overall overall_;
+    std::optional<StageLog> log_;  // of --verbose
     bool lineShown_ = false;
-    std::chrono::steady_clock::time_point lastShown_{};
+    std::string stagePrinted_;
+    std::optional<Time> lastShown_;
 };
 
 }  // namespace isowave::tools

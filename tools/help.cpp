@@ -10,6 +10,15 @@ namespace {
 
 constexpr std::size_t kWidth = 100;
 
+constexpr ExitCode kExitCodes[] = {
+    {0, "done"},
+    {1, "the work failed: a file could not be written, memory did not suffice"},
+    {2, "the command line is wrong"},
+    {3, "the input is not what it must be; one line says what was found, what was expected and what to do"},
+    {4, "check: the mesh is not closed, not 2-manifold or not oriented"},
+    {130, "interrupted (Ctrl-C); nothing was left behind"},
+};
+
 // Words of text, broken before column kWidth; every line but the first starts at column `indent`.
 std::string wrapped(std::string_view text, std::size_t indent) {
     std::istringstream words{std::string(text)};
@@ -27,7 +36,26 @@ std::string wrapped(std::string_view text, std::size_t indent) {
     return result;
 }
 
-// "-o, --output PATH"
+// '|' separates the cells of a markdown table.
+std::string cell(std::string text) {
+    for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
+    return text;
+}
+
+// | option | default | meaning |, one row an option.
+std::string markdownOptions(const Command& command) {
+    if (command.options().all().empty()) return {};
+    std::string text = "| option | default | meaning |\n|---|---|---|\n";
+    for (const Option& option : command.options().all())
+        text += fmt::format("| `{}` | {} | {} |\n", cell(signature(option)),
+                            cell(std::string(option.fallback)), cell(std::string(option.help)));
+    return text + "\n";
+}
+
+}  // namespace
+
+std::span<const ExitCode> exitCodes() { return kExitCodes; }
+
 std::string signature(const Option& option) {
     std::string names(option.names);
     if (const auto comma = names.find(','); comma != std::string::npos) names.insert(comma + 1, " ");
@@ -51,57 +79,6 @@ std::string upperFirst(std::string_view text) {
     if (!result.empty()) result[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(result[0])));
     return result;
 }
-
-// '|' separates the cells of a markdown table.
-std::string cell(std::string text) {
-    for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
-    return text;
-}
-
-// "lod:-o|lod:--output": the subcommand and the word before the one to complete.
-std::string valuePattern(const Command& command, const Option& option) {
-    std::string pattern;
-    std::string_view rest = option.names;
-    while (!rest.empty()) {
-        const auto comma = std::min(rest.find(','), rest.size());
-        pattern += fmt::format("{}{}:{}", pattern.empty() ? "" : "|", command.name(), rest.substr(0, comma));
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-    }
-    return pattern;
-}
-
-std::string valueReply(const Option& option) {
-    if (option.takesFile()) return "COMPREPLY=($(compgen -f -- \"$word\")); return";
-    if (!option.isChoice()) return "return";
-    std::string words(option.metavar);
-    std::replace(words.begin(), words.end(), '|', ' ');
-    return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return", words);
-}
-
-struct ExitCode {
-    int code;
-    std::string_view meaning;
-};
-constexpr ExitCode kExitCodes[] = {
-    {0, "done"},
-    {1, "the work failed: a file could not be written, memory did not suffice"},
-    {2, "the command line is wrong"},
-    {3, "the input is not what it must be; one line says what was found, what was expected and what to do"},
-    {4, "check: the mesh is not closed, not 2-manifold or not oriented"},
-    {130, "interrupted (Ctrl-C); nothing was left behind"},
-};
-
-// | option | default | meaning |, one row an option.
-std::string markdownOptions(const Command& command) {
-    if (command.options().all().empty()) return {};
-    std::string text = "| option | default | meaning |\n|---|---|---|\n";
-    for (const Option& option : command.options().all())
-        text += fmt::format("| `{}` | {} | {} |\n", cell(signature(option)),
-                            cell(std::string(option.fallback)), cell(std::string(option.help)));
-    return text + "\n";
-}
-
-}  // namespace
 
 std::string overview(const Commands& commands) {
     std::string text =
@@ -142,42 +119,6 @@ std::string markdownHelp(const Commands& commands) {
     text += "### Exit codes\n\n| code | meaning |\n|---|---|\n";
     for (const ExitCode& exit : kExitCodes) text += fmt::format("| {} | {} |\n", exit.code, exit.meaning);
     return text;
-}
-
-std::string bashCompletion(const Commands& commands) {
-    std::string names, offered, values;
-    for (const auto& command : commands) {
-        names += (names.empty() ? "" : " ") + std::string(command->name());
-        std::string list = "--help";
-        for (const Option& option : command->options().all()) {
-            list += " " + std::string(option.longName());
-            if (!option.isFlag())
-                values +=
-                    fmt::format("        {}) {} ;;\n", valuePattern(*command, option), valueReply(option));
-        }
-        offered += fmt::format("        {}) offered=\"{}\" ;;\n", command->name(), list);
-    }
-    return fmt::format(R"(# bash completion for isowave; made by: isowave completion bash
-_isowave() {{
-    local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}"
-    local offered=""
-    COMPREPLY=()
-    if [ "$COMP_CWORD" -eq 1 ]; then
-        COMPREPLY=($(compgen -W "{} --help --version" -- "$word"))
-        return
-    fi
-    case "$command:$before" in
-{}    esac
-    case "$command" in
-{}    esac
-    case "$word" in
-        -*) COMPREPLY=($(compgen -W "$offered" -- "$word")) ;;
-        *) COMPREPLY=($(compgen -f -- "$word")) ;;
-    esac
-}}
-complete -o filenames -F _isowave isowave
-)",
-                       names, values, offered);
 }
 
 }  // namespace isowave::tools

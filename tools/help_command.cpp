@@ -1,8 +1,12 @@
-// isowave help, isowave completion: the declarations of all commands in words.
+// isowave help, isowave completion: the declarations of all commands in words, as man pages and for shells.
 #include "isowave/error.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/help.h"
+#include "tools/output.h"
+#include "tools/shell/completion.h"
+#include "tools/shell/man_page.h"
+#include "tools/similar.h"
 
 namespace isowave::tools {
 namespace {
@@ -11,11 +15,14 @@ class Help : public Command {
   public:
     Help() : Command({"help", "[COMMAND]", "this overview, or the options of one subcommand", ""}) {
         options_.flag("--markdown", "everything, as markdown", markdown_);
+        options_.result("--man", "PATH", "man pages of all commands go into this folder", man_);
     }
 
     int run(Console& console) override {
         const Commands commands = allCommands();
-        if (markdown_)
+        if (man_)
+            writeManPages(commands);
+        else if (markdown_)
             console.print(markdownHelp(commands));
         else if (arguments.empty())
             console.print(overview(commands));
@@ -28,23 +35,34 @@ class Help : public Command {
     const Command& named(const Commands& commands) const {
         const std::string name = arguments[0].string();
         if (const Command* command = findCommand(commands, name)) return *command;
-        throw UsageError("help: there is no subcommand '" + name + "'; see isowave help");
+        std::vector<std::string_view> names;
+        for (const auto& command : commands) names.push_back(command->name());
+        throw UsageError("help: there is no subcommand '" + name + "'" +
+                         suggestion(name, names, "isowave help"));
+    }
+
+    void writeManPages(const Commands& commands) const {
+        OutputFolder out(*man_);
+        writeFiles(out, manPages(commands));
+        out.commit();
     }
 
     bool markdown_ = false;
+    std::optional<std::filesystem::path> man_;
 };
 
 class Completion : public Command {
   public:
     Completion()
-        : Command({"completion", "bash",
-                   "a completion script for the shell: source <(isowave completion bash)", ""}) {}
+        : Command({"completion", "SHELL",
+                   "a completion script for bash or zsh: source <(isowave completion bash)", ""}) {}
 
     int run(Console& console) override {
-        if (arguments[0] != "bash")
-            throw UsageError("completion: '" + arguments[0].string() +
-                             "' is not a shell that is known; bash is");
-        console.print(bashCompletion(allCommands()));
+        const std::string shell = arguments[0].string();
+        if (shell != "bash" && shell != "zsh")
+            throw UsageError("completion: '" + shell + "' is not a shell that is known; bash and zsh are");
+        const Commands commands = allCommands();
+        console.print(shell == "bash" ? bashCompletion(commands) : zshCompletion(commands));
         return 0;
     }
 };

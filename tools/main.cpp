@@ -1,19 +1,16 @@
 // isowave: one subcommand, one exit code, one line on standard error when it goes wrong.
-#include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <iostream>
-#include <new>
 #include <optional>
 #include <vector>
 
 #include "base/heap.h"
-#include "isowave/error.h"
-#include "isowave/progress.h"
 #include "isowave/version.h"
+#include "tools/about.h"
 #include "tools/cli.h"
 #include "tools/console.h"
+#include "tools/failure.h"
 #include "tools/help.h"
 #include "tools/output.h"
 
@@ -36,9 +33,11 @@ void refuseToReplace(const tools::Command& command) {
 int run(int argc, char** argv) {
     const tools::Commands commands = tools::allCommands();
     const tools::Invocation invocation = tools::parseCommandLine(commands, argc, argv);
-    tools::Console console(invocation.command && invocation.command->quiet);
+    tools::Console console(invocation.command ? invocation.command->talk : tools::Talk());
     if (!invocation.command) {
-        console.print(invocation.version ? "isowave " ISOWAVE_VERSION "\n" : tools::overview(commands));
+        console.print(!invocation.version  ? tools::overview(commands)
+                      : invocation.verbose ? tools::verboseVersion()
+                                           : "isowave " ISOWAVE_VERSION "\n");
         return 0;
     }
     tools::Command& command = *invocation.command;
@@ -56,10 +55,9 @@ int run(int argc, char** argv) {
     return code;
 }
 
-int complain(int code, std::string message) {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::cerr << "isowave: " << message << '\n';
-    return code;
+int complain(const tools::Failure& failure) {
+    std::cerr << "isowave: " << failure.message << '\n';
+    return failure.exitCode;
 }
 
 }  // namespace
@@ -69,19 +67,10 @@ int main(int argc, char** argv) {
     tools::installSignalHandlers();
     try {
         const int code = run(argc, argv);
-        if (!std::cout.flush()) return complain(1, "standard output could not be written; is the disk full?");
+        if (!std::cout.flush())
+            return complain({1, "standard output could not be written; is the disk full?"});
         return code;
-    } catch (const isowave::UsageError& error) {
-        return complain(2, error.what());
-    } catch (const isowave::InputError& error) {
-        return complain(3, error.what());
-    } catch (const isowave::Cancelled&) {
-        return complain(130, "interrupted; nothing was left behind");
-    } catch (const isowave::OperationError& error) {
-        return complain(1, error.what());
-    } catch (const std::bad_alloc&) {
-        return complain(1, "memory did not suffice; take fewer voxels or free some memory");
-    } catch (const std::exception& error) {
-        return complain(1, fmt::format("failed: {}", error.what()));
+    } catch (...) {
+        return complain(tools::failureOf(std::current_exception()));
     }
 }

@@ -8,8 +8,6 @@
 
 #include "isowave/version.h"
 
-#include "isowave/version.h"
-
 namespace isowave {
 
 // Thrown out of a long function whose Progress asked it to stop. Results are returned by value and files are

@@ -1,4 +1,4 @@
-// isowave analyse INPUT -o FILE.vdb: the whole pyramid, lossless.
+// isowave analyse INPUT -o FILE.vdb: the whole pyramid, lossless; of several inputs, a file each.
 #include <fmt/format.h>
 
 #include "base/number_text.h"
@@ -7,6 +7,8 @@
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/output.h"
+#include "tools/solids/dry_run_text.h"
+#include "tools/solids/parts.h"
 #include "tools/solids/solid_options.h"
 
 namespace isowave::tools {
@@ -14,35 +16,66 @@ namespace {
 
 class Analyse : public Command {
   public:
-    Analyse()
-        : Command({"analyse", "INPUT", "a solid -> its pyramid, lossless, in one .vdb",
-                   "Takes what lod takes. Every step of the pyramid can be had back with mesh and field."}) {
-        declareOutput("the pyramid's file");
-        declareSolid(options_, solid_);
-        declareThreads();
-        declareMaxMemory(options_, solid_);
-        declareQuiet();
-    }
-    bool needsOutput() const override { return true; }
-
-    int run(Console& console) override {
-        if (output_->extension() != ".vdb")
-            throw UsageError("-o: a pyramid is a .vdb file; name it for example part.pyramid.vdb");
-        OutputFile out(*output_);
-        const Pyramid pyramid = analyse(open(arguments[0], solid_, console.progress()), console.progress());
-        pyramid.save(*output_);
-        out.commit();
-
-        const std::int64_t points = pyramid.controlPoints(), stored = pyramid.coefficientsStored();
-        console.print(fmt::format("{}: {} steps, {} coefficients stored for {} control points (x{:.3f})\n",
-                                  output_->string(), pyramid.stepCount(), grouped(stored), grouped(points),
-                                  static_cast<double>(stored) / static_cast<double>(points)));
-        return 0;
-    }
+    Analyse();
+    bool needsOutput() const override { return !dryRun_; }
+    bool hasOtherInputs() const override { return parts_.list.has_value(); }
+    int run(Console& console) override;
 
   private:
+    int runParts(Console& console) const;
+    // Returns "12 steps, ...".
+    std::string write(const Part& part, const Progress& progress) const;
+
     SolidOptions solid_;
+    PartsChoice parts_;
+    bool dryRun_ = false;
 };
+
+Analyse::Analyse()
+    : Command({"analyse", "INPUT...", "a solid -> its pyramid, lossless, in one .vdb",
+               "Takes what lod takes. Every step of the pyramid can be had back with mesh and field. Several "
+               "inputs, -o out: out/NAME.pyramid.vdb each; one that fails does not stop the others."}) {
+    declareOutput("the pyramid's file");
+    parts_.declare(options_);
+    options_.flag("--dry-run",
+                  "make nothing; say voxels, memory, levels, and how many voxels thin the thinnest walls are",
+                  dryRun_);
+    declareSolid(options_, solid_);
+    declareThreads();
+    declareMaxMemory(options_, solid_);
+    declareTalk();
+}
+
+int Analyse::run(Console& console) {
+    if (dryRun_) return tellDryRuns(parts_.inputs(arguments), solid_, console);
+    if (parts_.asksForParts(arguments)) return runParts(console);
+    if (output_->extension() != ".vdb")
+        throw UsageError("-o: a pyramid is a .vdb file; name it for example part.pyramid.vdb");
+    console.print(
+        fmt::format("{}: {}\n", output_->string(), write({arguments[0], *output_}, console.progress())));
+    return 0;
+}
+
+int Analyse::runParts(Console& console) const {
+    PartsRun all(partsOf(parts_.inputs(arguments), *output_, ".pyramid.vdb"), console);
+    const int code =
+        all.run([this](const Part& part,
+                       const Progress& progress) { return PartStory{.text = write(part, progress)}; },
+                /*silent=*/false);
+    if (code != kInterrupted) console.print(all.text());
+    return code;
+}
+
+std::string Analyse::write(const Part& part, const Progress& progress) const {
+    OutputFile out(part.output);
+    const Pyramid pyramid = analyse(open(part.input, solid_, progress), progress);
+    pyramid.save(part.output);
+    out.commit();
+    const std::int64_t points = pyramid.controlPoints(), stored = pyramid.coefficientsStored();
+    return fmt::format("{} steps, {} coefficients stored for {} control points (x{:.3f})",
+                       pyramid.stepCount(), grouped(stored), grouped(points),
+                       static_cast<double>(stored) / static_cast<double>(points));
+}
 
 }  // namespace
 

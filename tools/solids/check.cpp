@@ -21,7 +21,7 @@ class Check : public Command {
         options_.flag("--self-intersections", "count pairs of triangles that intersect (slow)",
                       selfIntersections_);
         declareThreads();
-        declareQuiet();
+        declareTalk();
     }
 
     int run(Console& console) override {

@@ -38,7 +38,7 @@ class Compare : public Command {
                        "largest distance of a point of the surface to a sample",
                        [this](const std::string& v) { sampling_ = positive(v); });
         declareThreads();
-        declareQuiet();
+        declareTalk();
     }
 
     int run(Console& console) override {

@@ -25,7 +25,7 @@ class FieldCommand : public Command {
         declareSolid(options_, solid_);
         declareThreads();
         declareMaxMemory(options_, solid_);
-        declareQuiet();
+        declareTalk();
     }
     bool needsOutput() const override { return true; }
 

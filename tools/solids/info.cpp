@@ -107,7 +107,7 @@ class Info : public Command {
         declareImage(options_, solid_);
         declareThreads();
         declareMaxMemory(options_, solid_);
-        declareQuiet();
+        declareTalk();
     }
 
     int run(Console& console) override {

@@ -1,9 +1,18 @@
-// isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
-// the folder at once.
+// isowave lod INPUT... -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
+// the folder at once. Several inputs get a folder each, one after another.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
+#include "base/number_text.h"
+#include "io/mesh/glb_lods.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
 #include "isowave/ladder.h"
@@ -12,9 +21,14 @@
 #include "tools/console.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
+#include "tools/solids/dry_run_text.h"
 #include "tools/solids/mesh_names.h"
+#include "tools/solids/parts.h"
 #include "tools/solids/solid_options.h"
+#include "tools/view/level_facts.h"
+#include "tools/view/pages.h"
 
 namespace isowave::tools {
 namespace {
@@ -27,21 +41,52 @@ struct MeshWriter {
     MeshFormat format;
     MeshWriteOptions options;
     OutputFolder& out;
+    std::unique_ptr<view::Page> page;  // of --view
+    std::optional<GlbLods> lods;       // of --glb-lods
+    Progress progress;
     LadderFiles files;
+    double firstVoxel = 0;
+    bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
-    void write(const std::string& name, const TriangleMesh& mesh) {
+    template <class Report>
+    void write(const std::string& name, const Report& report, const TriangleMesh& mesh) {
         writeMesh(out.place(name), mesh, format, options);
+        if (!page) return;
+        view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
+        facts.file = name;
+        page->add(std::move(facts), mesh, progress);
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofStep(report.step));
-            write(files.levels.back(), mesh);
+            fromLevel0 = fromLevel0 || report.step == 0;
+            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
+            write(files.levels.back(), report, mesh);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), mesh);
+            write(files.budgets.back(), report, mesh);
         };
         return {level, budget, releaseFreedMemory};
+    }
+    // A level is fine enough while its voxel is at most so many voxels of the first one as the picture is smaller; the first one
+    // suits half a picture.
+    double coverageOf(const LevelReport& report) {
+        const double voxel = std::cbrt(report.spacing[0] * report.spacing[1] * report.spacing[2]);
+        if (firstVoxel == 0) firstVoxel = voxel;
+        return 0.5 * firstVoxel / voxel;
+    }
+    void writeLods() {
+        if (!lods) return;
+        files.lods = names.ofLods();
+        lods->write(out.place(files.lods));
+    }
+    void writePage() {
+        if (!page) return;
+        files.view = names.ofPage();
+        AtomicFile file(out.place(files.view));
+        writeWhole(file, page->html());
+        file.commit();
     }
 };
 
@@ -53,49 +98,114 @@ std::string unitShown(const Solid& solid) {
     return solid.space() == Space::unspecified ? "" : " [mm]";
 }
 
-// What can fail for want of room comes first; then only names change.
-void finish(const Ladder& ladder, const LadderFiles& files, const std::string& unit, bool toStdout,
-            AtomicFile* copy, OutputFolder& out, Console& console) {
-    const std::string json = jsonOf(ladder, files);
+// All that there is to tell about one input's meshes.
+struct Made {
+    Ladder ladder;
+    LadderFiles files;
+    std::string unit;  // as unitShown() has it
+};
+
+// Meshes that the folder's own report.json names, and this run does not make: they would pass for its levels.
+std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFiles& files) {
+    std::ifstream in(out.folder() / kReport);
+    const Json before = Json::parse(in, nullptr, /*allow_exceptions*/ false);
+    std::vector<std::string> left;
+    for (const char* key : {"levels", "budgets"}) {
+        if (!before.is_object() || !before.contains(key)) continue;
+        for (const Json& entry : before[key]) {
+            if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) continue;
+            const auto name = entry["file"].get<std::string>();
+            const auto isOf = [&](const std::vector<std::string>& made) {
+                return std::find(made.begin(), made.end(), name) != made.end();
+            };
+            std::error_code ignored;
+            if (!isOf(files.levels) && !isOf(files.budgets) &&
+                std::filesystem::is_regular_file(out.folder() / name, ignored))
+                left.push_back(name);
+        }
+    }
+    return left;
+}
+
+void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, const Progress& progress) {
+    const std::vector<std::string> left = leftFromBefore(out, files);
+    if (left.empty()) return;
+    progress.say(fmt::format("{}: {} of an earlier run {} there; this run has no such mesh",
+                             out.folder().string(), fmt::join(left, ", "),
+                             left.size() == 1 ? "stays" : "stay"));
+}
+
+void writeReport(const std::string& json, OutputFolder& out) {
     AtomicFile file(out.place(kReport));
     writeWhole(file, json);
     file.commit();
+}
+
+// "5 levels, 12,000 to 96 triangles"
+PartStory storyOf(const Made& made, const OutputFolder& out) {
+    PartStory story;
+    const std::vector<Level>& all = made.ladder.levels;
+    const auto levels =
+        std::count_if(all.begin(), all.end(), [](const Level& l) { return !l.report.vanished(); });
+    const auto budgets = static_cast<std::int64_t>(made.ladder.budgets.size());
+    if (levels > 0)
+        story.text =
+            fmt::format("{}, {} to {} triangles", counted(levels, "level"),
+                        grouped(all.front().report.topology.triangles),
+                        grouped(all[static_cast<std::size_t>(levels) - 1].report.topology.triangles));
+    if (budgets > 0)
+        story.text += (levels > 0 ? ", " : "") + counted(budgets, "mesh by budget", "meshes by budget");
+    story.json = {{"report", (out.folder() / kReport).string()}, {"levels", levels}, {"budgets", budgets}};
+    return story;
+}
+
+// What can fail for want of room comes first; then only names change.
+void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
+    const std::string json = jsonOf(made.ladder, made.files);
+    writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    console.print(toStdout ? json : textOf(ladder, files, unit));
+    tellOfWhatIsLeft(out, made.files, console.progress());
+    console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
     console.flush();
     out.commit();
     if (copy) copy->commit();
 }
 
-// Of the triangles of a mesh, or of level 0.
-double share(const std::string& text) {
-    const double ratio = positive(text);
-    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
-    return ratio;
-}
-
 class Lod : public Command {
   public:
     Lod();
-    bool needsOutput() const override { return true; }
+    bool needsOutput() const override { return !dryRun_; }
+    bool hasOtherInputs() const override { return parts_.list.has_value(); }
     int run(Console& console) override;
 
   private:
-    void declareLevels();
-    void declareBudgets();
+    void check();
+    int runOne(Console& console);
+    int runParts(Console& console);
+    PartStory runPart(const Part& part, const Progress& progress) const;
+    MeshNames namesIn(const OutputFolder& out) const;
+    Made make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+              const Progress& progress) const;
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+    std::optional<GlbLods> lodsOf(const Solid& solid) const;
+    // Nothing without --view.
+    std::unique_ptr<view::Page> pageOf(const Solid& solid, const std::string& name) const;
 
     LevelOptions levels_;
     BudgetOptions budgets_;
     SolidOptions solid_;
+    PartsChoice parts_;
+    bool dryRun_ = false;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
+    bool view_ = false;
+    std::optional<bool> quantizedLods_;  // --glb-lods
 };
 
 Lod::Lod()
     : Command(
-          {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
+          {"lod", "INPUT...", "a solid -> a ladder of closed meshes, one a level, and a report",
            "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
            "with "
            "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse). -o "
@@ -110,66 +220,94 @@ Lod::Lod()
            "it, with edges collapsed; the report says which and why. The ladder ends where one node is left, "
            "or "
            "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
-           "leaves the folder as it was."}) {
+           "leaves the folder as it was. Several inputs, -o out: each gets a folder of its own, out/NAME, as "
+           "if "
+           "it were run alone; one that fails does not stop the others."}) {
     declareOutput("the folder that gets one mesh a level, and report.json");
-    declareLevels();
+    parts_.declare(options_);
+    options_.flag("--dry-run",
+                  "make nothing; say voxels, memory, levels, and how many voxels thin the thinnest walls are",
+                  dryRun_);
+    declareLevels(options_, levels_);
     declareFormat(options_, format_);
     space_.declare(options_);
+    options_.value("--glb-lods", "quantized|float", "",
+                   "also one GLB with all levels (MSFT_lod), name_lods.glb: positions of 16 bits "
+                   "(KHR_mesh_quantization), or float32",
+                   [this](const std::string& v) {
+                       quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
+                   });
+    options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
-    declareBudgets();
+    declareBudgets(options_, budgets_, levels_);
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
-    declareQuiet();
-}
-
-void Lod::declareLevels() {
-    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
-                   [this](const std::string& v) { levels_.levels = range(v); });
-    options_.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
-                   [this](const std::string& v) { levels_.steps = range(v); });
-}
-
-void Lod::declareBudgets() {
-    options_.value(
-        "--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
-        [this](const std::string& v) {
-            budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
-        });
-    options_.value("--ratio", "R,R,...", "",
-                   "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
-                   "%): name_RR",
-                   [this](const std::string& v) { budgets_.ratios = list(v, share); });
-    options_.value("--tolerance", "D,D,...", "",
-                   "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
-                   [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value(
-        "--max-genus", "N", "",
-        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
-        [this](const std::string& v) { levels_.maxGenus = integer(v, 0, kHuge); });
-    options_.value(
-        "--max-parts", "N", "",
-        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
-        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
-    options_.value("--min-component", "VOLUME", "",
-                   "budgets: only from steps without components smaller than that (world units cubed)",
-                   [this](const std::string& v) { budgets_.minComponent = positive(v); });
+    declareTalk();
 }
 
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
-    if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
+    if (view_) out.refuseTaken(names.ofPage());
+    if (quantizedLods_) out.refuseTaken(names.ofLods());
 }
 
-int Lod::run(Console& console) {
-    OutputFolder out(*output_, Inputs(arguments));
-    const MeshFormat format = format_.value_or(MeshFormat::ply);
+std::optional<GlbLods> Lod::lodsOf(const Solid& solid) const {
+    if (!quantizedLods_) return std::nullopt;
+    return GlbLods({space_.of(solid), metresPerUnitOf(solid)}, *quantizedLods_);
+}
+
+std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& name) const {
+    return view_ ? std::make_unique<view::Page>(pageOptionsOf(solid.input(), name)) : nullptr;
+}
+
+void Lod::check() {
+    if (view_) view::requirePages();
+    if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
+        throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
     checkRanges(levels_);
-    const MeshNames names(out.name(), format, levels_, budgets_);
+}
+
+MeshNames Lod::namesIn(const OutputFolder& out) const {
+    return MeshNames(out.name(), format_.value_or(MeshFormat::ply), levels_, budgets_);
+}
+
+Made Lod::make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+               const Progress& progress) const {
+    Solid solid = open(input, solid_, progress);
+    const std::string unit = unitShown(solid);
+    MeshWriter writer{.names = names,
+                      .format = format_.value_or(MeshFormat::ply),
+                      .options = {space_.of(solid), metresPerUnitOf(solid)},
+                      .out = out,
+                      .page = pageOf(solid, out.name()),
+                      .lods = lodsOf(solid),
+                      .progress = progress,
+                      .files = {}};
+    Ladder ladder = makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), progress);
+    writer.writeLods();
+    writer.writePage();
+    return {std::move(ladder), std::move(writer.files), unit};
+}
+
+int Lod::run(Console& console) {
+    if (dryRun_) {
+        check();
+        if (json_) throw UsageError("--dry-run has no report; leave out --json");
+        return tellDryRuns(parts_.inputs(arguments), solid_, console);
+    }
+    return parts_.asksForParts(arguments) ? runParts(console) : runOne(console);
+}
+
+int Lod::runOne(Console& console) {
+    OutputFolder out(*output_, Inputs(arguments));
+    check();
+    const MeshNames names = namesIn(out);
+    if (jsonToFile()) out.keepFree(*json_);
     refuseTaken(names, out);
     std::optional<OutputFile> copyFolders;
     std::optional<AtomicFile> copy;  // opened now: a report that cannot be written is no surprise at the end
@@ -178,17 +316,44 @@ int Lod::run(Console& console) {
         copy.emplace(*json_);
     }
     try {
-        Solid solid = open(arguments[0], solid_, console.progress());
-        const std::string unit = unitShown(solid);
-        MeshWriter writer{names, format, {space_.of(solid), metresPerUnitOf(solid)}, out, {}};
-        const Ladder ladder =
-            makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
-        finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
+        const Made made = make(arguments[0], names, out, console.progress());
+        finish(made, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
     }
     return 0;
+}
+
+// --json has what became of each input; the reports are in the folders.
+int Lod::runParts(Console& console) {
+    check();
+    const std::vector<std::filesystem::path> inputs = parts_.inputs(arguments);
+    std::vector<Part> parts = partsOf(inputs, *output_);
+    if (jsonToFile()) refuseAmong(parts, *json_);
+    openJson();
+    PartsRun all(std::move(parts), console);
+    const int code = all.run([this](const Part& part, const Progress& p) { return runPart(part, p); },
+                             jsonToStandardOutput());
+    if (code != kInterrupted) tell(console, all.text(), dumped(all.json()));
+    return code;
+}
+
+PartStory Lod::runPart(const Part& part, const Progress& progress) const {
+    OutputFolder out(part.output, Inputs({part.input}));
+    const MeshNames names = namesIn(out);
+    refuseTaken(names, out);
+    try {
+        const Made made = make(part.input, names, out, progress);
+        writeReport(jsonOf(made.ladder, made.files), out);
+        progress.check();
+        tellOfWhatIsLeft(out, made.files, progress);
+        const PartStory story = storyOf(made, out);
+        out.commit();
+        return story;
+    } catch (const OperationError& error) {
+        throw OperationError(out.publicText(error.what()));
+    }
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ CurveLevels::CurveLevels()
         "--keep", "N", "", "keep only the N longest details of each curve, into thresholded",
         [this](const std::string& v) { report_.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--compare-schemes", "compare the schemes' errors too", report_.compare);
-    declareQuiet();
+    declareTalk();
 }
 
 CurveReport CurveLevels::reported(const CurveFile& file) const {
@@ -98,6 +98,7 @@ int CurveLevels::run(Console& console) {
     const CurveFile file = CurveFile::read(arguments[0]);
     const CurveReport report = reported(file);
     writeFiles(out, filesOf(report, file, arguments[0].extension().string()));
+    readyToTell(console, jsonOf(report));
     out.commit();
     for (const auto& remark : remarks(report)) console.say(remark);
     tell(console, textOf(report), jsonOf(report));

@@ -60,7 +60,7 @@ FiltersCommand::FiltersCommand()
                   "other option",
                   boundary_);
     options_.result("--svg", "FILE", "draw the diagrams into this file", svg_);
-    declareQuiet();
+    declareTalk();
 }
 
 Filters FiltersCommand::wanted() const {
@@ -91,8 +91,9 @@ int FiltersCommand::run(Console& console) {
         return 0;
     }
     const Filters filters = wanted();
-    if (svg_) draw(filters);
     const Proof proof = prove(filters);
+    readyToTell(console, jsonOf(filters, proof));
+    if (svg_) draw(filters);
     tell(console, textOf(filters, proof), jsonOf(filters, proof));
     return 0;
 }

@@ -82,7 +82,7 @@ Rebuild::Rebuild()
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--error-table", "the error that is left with the longest 0 to 50 % of the details",
                   errorTable_);
-    declareQuiet();
+    declareTalk();
 }
 
 void Rebuild::refuseContradictions() const {
@@ -117,6 +117,7 @@ int Rebuild::run(Console& console) {
     }();
 
     OutputFile out(*output_);
+    readyToTell(console, jsonOf(report));
     writePolygonMesh(*output_, mesh);
     out.commit();
     tell(console, textOf(report), jsonOf(report));

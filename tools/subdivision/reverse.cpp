@@ -53,7 +53,7 @@ Reverse::Reverse()
                    [this](const std::string& v) { variant_ = v; });
     declareCrease(options_, creaseAngle_);
     options_.result("--details", "FILE", "the file that gets the details", details_);
-    declareQuiet();
+    declareTalk();
 }
 
 DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
@@ -100,6 +100,7 @@ int Reverse::run(Console& console) {
         }
     }();
     const DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
+    readyToTell(console, jsonOf(report));
     write(hierarchy);
     if (report.roundTrip > kMeshRoundTrip * report.diagonal)
         console.say("the mesh comes back to " + std::to_string(report.roundTrip / report.diagonal) +
