@@ -14,7 +14,7 @@ namespace {
 
 // To the end, from pipes too.
 std::string everyByte(const FileDescriptor& file) {
-    constexpr std::size_t kFirstBlock = 1 << 20;
+    constexpr std::size_t kFirstBlock = 1 << 16;
     std::string bytes;
     for (std::size_t size = 0;;) {
         if (size == bytes.size()) bytes.resize(std::max(kFirstBlock, 2 * size));

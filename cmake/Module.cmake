@@ -17,6 +17,7 @@ function(isowave_module name)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   if(arg_GRIDS)
     isowave_no_precompiled_alarms(${target})
+    isowave_fewer_checks(${target})
   endif()
   if(arg_GRIDS AND name STREQUAL "volume")
     target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/volume/vdb.h <fmt/format.h>)
@@ -54,6 +55,15 @@ function(isowave_warnings target)
   endif()
 endfunction()
 
+# Of UndefinedBehaviorSanitizer's checks those that stand at every access to memory and that AddressSanitizer makes all but
+# superfluous: without them a source with OpenVDB's headers compiles in 20 s instead of 32 s (volume/fit/repair.cpp).
+function(isowave_fewer_checks target)
+  if(ISOWAVE_SANITIZE MATCHES undefined)
+    target_compile_options(${target} PRIVATE
+      -fno-sanitize=null,alignment,vptr,object-size,return,nonnull-attribute,returns-nonnull-attribute)
+  endif()
+endfunction()
+
 # isowave_test(NAME SOURCES a_test.cpp ... LIBS lib ... [PRECOMPILE header ...]): one test program, one ctest entry a
 # TEST(). Headers that cost seconds are parsed once for all sources, each of which still includes what it uses
 # (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without), and a release compiles with -O1: what the tests call is optimized,
@@ -71,6 +81,9 @@ function(isowave_test name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h> ${arg_PRECOMPILE})
   isowave_no_precompiled_alarms(${name})
+  if(arg_PRECOMPILE MATCHES openvdb)
+    isowave_fewer_checks(${name})
+  endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()

@@ -5,29 +5,30 @@
 
 #include <atomic>
 #include <cstddef>
+#include <exception>
 
-#include "isowave/error.h"
 #include "isowave/progress.h"
 
 namespace isowave {
 
-// body(i) for 0 <= i < n. Once a stop is asked for no body is begun any more, and those that run come to their end; then it throws
-// Cancelled. An exception inside the loop would stop the loops in other bodies, too, which go on with what these have not made.
+// body(i) for 0 <= i < n. Once a stop is asked for, or a body has thrown, no body is begun any more, and those that run come to their
+// end; then it throws Cancelled, or what the first one threw. An exception that left the loop would end the loops in other bodies,
+// too, which go on with what these have not made.
 template <class Body>
 void forEachUntilStopped(std::size_t n, const Progress& progress, const Body& body) {
     std::atomic<bool> stopped = false;
+    std::exception_ptr thrown;
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
         if (stopped) return;
         try {
             progress.check();
-        } catch (const Cancelled&) {
-            stopped = true;
-            return;
+            body(i);
+        } catch (...) {
+            if (!stopped.exchange(true)) thrown = std::current_exception();
         }
-        body(i);
     });
+    if (thrown) std::rethrow_exception(thrown);
     progress.check();
-    if (stopped) throw Cancelled();
 }
 
 }  // namespace isowave

@@ -42,10 +42,11 @@ std::vector<double> numbers(const std::string& text) {
 }
 
 std::string headerFileText(const fs::path& path) {
-    constexpr std::streamsize kLongestHeader = 1 << 20;
-    std::string text(kLongestHeader, '\0');
+    constexpr std::uintmax_t kLongestHeader = 1 << 20;
+    std::error_code error;  // then the size is "-1", the largest one, and what can be read is read
+    std::string text(std::min(kLongestHeader, fs::file_size(path, error)), '\0');
     std::ifstream file(path, std::ios::binary);
-    file.read(text.data(), kLongestHeader);
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(file.gcount()));
     return text;
 }

@@ -19,13 +19,15 @@ struct Format {
     void (*chooseFirst)(ImageReadOptions&);
 };
 constexpr auto kVolume = [](ImageReadOptions& o) { o.volume = 1; };
+constexpr auto kFrames = [](ImageReadOptions& o) { o.stack = o.time = 1; };
 constexpr Format kFormats[] = {
     {"nifti", "image.nii", kVolume},
     {"nrrd", "image.nrrd", kVolume},
     {"metaimage", "image.mha", kVolume},
     {"mgh", "image.mgh", kVolume},
     {"tiff", "image.tif", [](ImageReadOptions& o) { o.channel = o.time = 1; }},
-    {"dicom", "image.dcm", [](ImageReadOptions& o) { o.stack = o.time = 1; }},
+    {"dicom", "image.dcm", kFrames},
+    {"dicom-compressed", "image.dcm", kFrames},
 };
 
 void check(const Image& image) {
@@ -65,7 +67,15 @@ void readWith(const std::filesystem::path& path, const ImageReadOptions& options
     checkSlices(path, options, image);
 }
 
+// A transfer syntax (PS3.5 section 10) whose pixels GDCM decodes.
+bool isCompressedDicom(std::string_view bytes) {
+    for (const char* syntax : {"1.2.840.10008.1.2.4", "1.2.840.10008.1.2.5"})
+        if (bytes.find(syntax) != bytes.npos) return true;
+    return false;
+}
+
 Answer read(std::string_view bytes, const Format& format) {
+    if (format.name == std::string_view("dicom") && isCompressedDicom(bytes)) return Answer::refused;
     const auto path = fileOf(bytes, format.file);
     ImageReadOptions options;
     options.memoryLimit = kMemory;
@@ -73,7 +83,7 @@ Answer read(std::string_view bytes, const Format& format) {
     if (answerOf(path.string(), [&] { readWith(path, options); }) == Answer::read) return Answer::read;
     format.chooseFirst(options);
     options.nan = 0.0f;
-    options.resampleSlices = std::string_view(format.name) == "dicom";
+    options.resampleSlices = std::string_view(format.name).starts_with("dicom");
     return answerOf(path.string(), [&] { readWith(path, options); });
 }
 

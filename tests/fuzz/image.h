@@ -1,4 +1,4 @@
-// Readers of images: nifti, nrrd, metaimage, mgh, tiff, dicom.
+// Readers of images: nifti, nrrd, metaimage, mgh, tiff, dicom, dicom-compressed.
 #pragma once
 
 #include "tests/fuzz/target.h"
@@ -6,7 +6,8 @@
 namespace isowave::fuzz {
 
 // readImage(), and ImageStream slice by slice, which must give the same values. A file of several volumes is read again with
-// its first one chosen. Compressed DICOM pixels go to GDCM in a child process as in the program (io/image/dicom/codec.h).
+// its first one chosen. Compressed DICOM pixels go to GDCM in a child process as in the program (io/image/dicom/codec.h), which takes
+// most of the time; so they have a target of their own, and `dicom` passes them over.
 std::vector<Target> imageTargets();
 
 }  // namespace isowave::fuzz

@@ -279,7 +279,7 @@ def dicoms():
         pieces += item(struct.pack("<16I", 2, 64, 64 + len(high), *[0] * 13) + high + low)
     pixels = struct.pack("<HH2sHI", 0x7FE0, 0x0010, b"OB", 0, 0xFFFFFFFF) + item(b"") + pieces
     pixels += struct.pack("<HHI", 0xFFFE, 0xE0DD, 0)
-    yield "dicom/rle.dcm", dicom(pixels=pixels, syntax="1.2.840.10008.1.2.5")
+    yield "dicom-compressed/rle.dcm", dicom(pixels=pixels, syntax="1.2.840.10008.1.2.5")
 
 
 # ---- pictures
@@ -365,9 +365,9 @@ def hierarchy():
 
 
 def shapes():
-    """Bytes of tests/fuzz/solids/shapes.cpp: options, size, boxes; sizes there are value % 13 + 2."""
+    """Bytes of tests/fuzz/solids/shapes.cpp: options, size, boxes; sizes there are value % 8 + 2."""
     plain = bytes([1, 0, 3])  # iso 0.5, not inverted, the fit that suits
-    size, spacing = bytes([8, 8, 8]), bytes([0, 0, 0])
+    size, spacing = bytes([7, 7, 7]), bytes([0, 0, 0])
     block = bytes([1, 2, 4, 2, 4, 2, 4])
     wall = bytes([1, 1, 8, 4, 0, 1, 8])
     yield "lattice-solid/block", plain + size + spacing + bytes([1]) + block
@@ -377,10 +377,10 @@ def shapes():
     yield "lattice-solid/grey", bytes([1, 0, 2]) + size + spacing + bytes([1]) + block + bytes([1, 0]) + bytes(range(256)) * 4
     box = bytes([1, 2, 2, 2, 14, 14, 14])
     tetrahedron = bytes([0, 0, 0, 0, 20, 0, 0, 0, 20, 0, 0, 0, 20])
-    yield "mesh-solid/box", bytes([10, 0, 0, 0]) + box
-    yield "mesh-solid/tetrahedron", bytes([10, 0, 0, 0]) + tetrahedron
-    yield "mesh-solid/overlap", bytes([10, 0, 0, 1]) + box + tetrahedron
-    yield "mesh-solid/nested", bytes([14, 0, 0, 1]) + box + bytes([1, 10, 10, 10, 6, 6, 6])
+    yield "mesh-solid/box", bytes([8, 0, 0, 0]) + box
+    yield "mesh-solid/tetrahedron", bytes([8, 0, 0, 0]) + tetrahedron
+    yield "mesh-solid/overlap", bytes([8, 0, 0, 1]) + box + tetrahedron
+    yield "mesh-solid/nested", bytes([8, 0, 0, 1]) + box + bytes([1, 10, 10, 10, 6, 6, 6])
     yield "pyramid/renamed", bytes([0, 4, 9])
     yield "vdb/ball_blosc.vdb", (DATA / "vdb/ball_blosc.vdb").read_bytes()
 
@@ -395,7 +395,7 @@ def own():
 # ---- files of tests/data
 
 FROM_DATA = {"stl": ["broken_stl/*.stl"], "off": ["meshes/pinion.off"], "obj": ["subdiv/catmark_torus.obj", "meshes/*.obj"],
-             "dicom": ["dicom_damaged/*.dcm"], "geojson": ["curves2d/africa.geojson"], "png": ["curves2d/*.png"],
+             "dicom-compressed": ["dicom_damaged/*.dcm"], "dicom": ["dicom_damaged/*.dcm"], "geojson": ["curves2d/africa.geojson"], "png": ["curves2d/*.png"],
              "points": ["coast/iceland.txt"], "nrrd": ["ct/cranium_crop.nrrd"]}
 
 

@@ -172,7 +172,7 @@ TEST(Compact, RealPartsKeepTheTopologyOfTheFinerMeshAtAQuarterOfItsTriangles) {
     cranium.iso = 300;
     for (const auto& [file, options] :
          {std::pair{"meshes/pinion.off", pinion}, {"ct/cranium_crop.nrrd", cranium}}) {
-        const auto level = [&](bool compact) {
+        const auto level = [&, file = file, options = options](bool compact) {
             return levelsOf(open(dataFile(file), options),
                             {.levels = StepRange{2, 2}, .refine = 2, .compact = compact})
                 .at(0)

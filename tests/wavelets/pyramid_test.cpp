@@ -52,7 +52,7 @@ TEST(Pyramid, DescendingWithoutItMeetsTheSameFieldsAndCountsTheSameCoefficients)
         const Pyramid pyramid = analyse(
             field, {}, {}, [&](int, const BSplineField& step) { expected.push_back(step.controlPoints); });
         std::size_t met = 0;
-        const Descent descent = descend(field, {}, {}, [&](int step, const BSplineField& f) {
+        const Descent descent = descend(field, {}, {}, [&, name = name](int step, const BSplineField& f) {
             ASSERT_EQ(step, static_cast<int>(met));
             ASSERT_LT(met, expected.size());
             EXPECT_TRUE(sameToTheBit(*f.controlPoints, *expected[met++])) << name << ' ' << step;
@@ -129,15 +129,16 @@ TEST(Pyramid, AnyStepComesBackAsItWasOnTheWayDown) {
 
 TEST(Pyramid, ControlPointsOutsideIAreExactlyPlusOrMinusK) {
     for (const auto& [name, field] : zoo::allFields())
-        analyse(field, {}, {}, [&, K = static_cast<float>(field.K)](int step, const BSplineField& f) {
-            const auto inside = f.shape->getConstAccessor();
-            ASSERT_TRUE(f.shape->tree().hasSameTopology(f.controlPoints->tree())) << name << step;
-            ASSERT_FALSE(f.controlPoints->tree().hasActiveTiles()) << name << step;
-            EXPECT_EQ(f.controlPoints->background(), K);
-            for (auto c = f.controlPoints->cbeginValueOff(); c; ++c)
-                ASSERT_EQ(*c, inside.getValue(c.getCoord()) ? -K : K)
-                    << name << " step " << step << c.getCoord();
-        });
+        analyse(field, {}, {},
+                [&, name = name, K = static_cast<float>(field.K)](int step, const BSplineField& f) {
+                    const auto inside = f.shape->getConstAccessor();
+                    ASSERT_TRUE(f.shape->tree().hasSameTopology(f.controlPoints->tree())) << name << step;
+                    ASSERT_FALSE(f.controlPoints->tree().hasActiveTiles()) << name << step;
+                    EXPECT_EQ(f.controlPoints->background(), K);
+                    for (auto c = f.controlPoints->cbeginValueOff(); c; ++c)
+                        ASSERT_EQ(*c, inside.getValue(c.getCoord()) ? -K : K)
+                            << name << " step " << step << c.getCoord();
+                });
 }
 
 TEST(Pyramid, SignsOfACoarseShapeAreThoseOfTheEvenFinePoints) {
@@ -158,7 +159,7 @@ TEST(Pyramid, SignsOfACoarseShapeAreThoseOfTheEvenFinePoints) {
 
 TEST(Pyramid, RunsAreFourOrLongerAfterEveryStep) {
     for (const auto& [name, field] : zoo::allFields())
-        analyse(field, {}, {}, [&](int step, const BSplineField& f) {
+        analyse(field, {}, {}, [&, name = name](int step, const BSplineField& f) {
             const auto known = f.controlPoints->getConstAccessor();
             for (auto c = f.controlPoints->cbeginValueOn(); c; ++c)
                 for (int axis = 0; axis < 3; ++axis) {

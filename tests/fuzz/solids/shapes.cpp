@@ -22,11 +22,14 @@ void requireSound(const TriangleMesh& mesh) {
 
 // Every known control point of a, in b.
 void requireEqual(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b, double tolerance) {
-    require(a.tree().hasSameTopology(b.tree()), "the pyramid restores other control points");
+    require(a.activeVoxelCount() == b.activeVoxelCount(), "the pyramid restores other control points");
     const auto other = b.getConstAccessor();
-    for (auto c = a.cbeginValueOn(); c; ++c)
-        require(std::abs(double(*c) - double(other.getValue(c.getCoord()))) <= tolerance,
-                "the pyramid does not restore a control point");
+    for (auto c = a.cbeginValueOn(); c; ++c) {
+        float value = 0;
+        require(other.probeValue(c.getCoord(), value), "the pyramid does not restore a control point");
+        require(std::abs(double(*c) - double(value)) <= tolerance,
+                "a control point comes back with another value");
+    }
 }
 
 void checkPyramid(const Solid& solid, Bytes& bytes) {
@@ -114,7 +117,7 @@ void forVoxels(Image& image, const F& set) {
 
 // Boxes put together and taken away, then grey values or single voxels as the bytes say.
 Image imageOf(Bytes& bytes) {
-    constexpr int kLargest = 14;
+    constexpr int kLargest = 9;
     Image image;
     for (std::int64_t& n : image.size) n = bytes.between(2, kLargest);
     for (int a = 0; a < 3; ++a) image.indexToWorld.axis[a][a] = 1 + bytes.between(0, 2) * 0.5;
@@ -208,7 +211,7 @@ Answer meshSolid(std::string_view input) {
     return answerOf("mesh", [&] {
         Bytes bytes(input);
         SolidOptions options;
-        options.voxels = bytes.between(6, 20);
+        options.voxels = bytes.between(6, 14);
         if (const int more = bytes.between(0, 7); more == 6)
             options.closeHoles = 20;
         else if (more == 7)

@@ -5,7 +5,7 @@
 
 namespace isowave::fuzz {
 
-// bytes -> a lattice of at most 14 points along an axis, as voxels or as signed distances; or up to six boxes and tetrahedra
+// bytes -> a lattice of at most 9 points along an axis, as voxels or as signed distances; or up to six boxes and tetrahedra
 // of a triangle mesh -> open() -> analyse() -> every field -> every mesh -> makeLadder(). Checked:
 //   - the fit's signs are the input's unless the repair gave up (FitSummary)
 //   - the pyramid restores every control point of step 0, to 1e-5 K

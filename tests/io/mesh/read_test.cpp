@@ -348,10 +348,11 @@ std::string asciiStl() {
 }
 
 TEST(ReadMesh, ReadsTextHoweverItIsEncodedAndBroken) {
-    for (const auto& [name, text] : {std::pair{"a.obj", kTetrahedronObj},
-                                     {"a.off", kTetrahedronOff},
-                                     {"a.ply", kTetrahedronPly},
-                                     {"a.stl", asciiStl()}}) {
+    for (const auto& file : {std::pair{"a.obj", kTetrahedronObj},
+                             {"a.off", kTetrahedronOff},
+                             {"a.ply", kTetrahedronPly},
+                             {"a.stl", asciiStl()}}) {
+        const std::string name = file.first, text = file.second;
         const TriangleMesh mesh = readBytes(name, text);
         for (const char* end : {"\r\n", "\r", " \t\n"})
             EXPECT_EQ(readBytes(name, withLineEnd(text, end)).points, mesh.points) << name;
