@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -141,6 +142,49 @@ TEST(CellTable, HasVerticesInsideOnlyWhereTheSignsLeaveAChoice) {
             EXPECT_EQ(cellTable().ambiguousFaces(pattern), 0u);
             EXPECT_LE(cellTable().plain(pattern).loops.size(), 1u);
         }
+}
+
+// Squared, between the middles of two edges.
+double squaredBetween(int edgeA, int edgeB) {
+    const auto middle = [](int e) {
+        const CellEdge& edge = cellTable().edge(e);
+        std::array<double, 3> at{double(edge.x), double(edge.y), double(edge.z)};
+        at[edge.axis] = 0.5;
+        return at;
+    };
+    const auto a = middle(edgeA), b = middle(edgeB);
+    return std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2);
+}
+
+// The least sum over the diagonals of all triangulations of loop[i..j], none of which has a diagonal in a face.
+double leastDiagonals(const std::vector<std::uint8_t>& loop, std::size_t i, std::size_t j) {
+    if (j - i < 2) return 0;
+    const auto chord = [&](std::size_t a, std::size_t b) {
+        if (b - a < 2) return 0.0;
+        return shareAFace(loop[a], loop[b]) ? HUGE_VAL : squaredBetween(loop[a], loop[b]);
+    };
+    double least = HUGE_VAL;
+    for (std::size_t k = i + 1; k < j; ++k)
+        least = std::min(least,
+                         chord(i, k) + chord(k, j) + leastDiagonals(loop, i, k) + leastDiagonals(loop, k, j));
+    return least;
+}
+
+TEST(CellTable, FillsALoopByTheShortestDiagonals) {
+    int longerThanFour = 0;
+    for (unsigned pattern = 0; pattern < 256; ++pattern) {
+        if (!cellTable().isPlain(pattern) || cellTable().plain(pattern).loops.size() != 1) continue;
+        const CellCase& cell = cellTable().plain(pattern);
+        const auto list = sidesOf(cell);
+        const std::set<Segment> sides(list.begin(), list.end());
+        double diagonals = 0;
+        for (const auto& [a, b] : sides)
+            if (a < b && sides.contains({b, a})) diagonals += squaredBetween(a, b);
+        const auto& loop = cell.loops.front();
+        EXPECT_DOUBLE_EQ(diagonals, leastDiagonals(loop, 0, loop.size() - 1)) << pattern;
+        longerThanFour += loop.size() > 4;
+    }
+    EXPECT_GT(longerThanFour, 50);  // whose triangulations are not all as long
 }
 
 TEST(CellTable, TheCheckSeesADiagonalInAFaceAMissingTriangleAndTwoFans) {
