@@ -209,6 +209,21 @@ TEST(RowAscent, OneRowIsAProjection) {
                 std::pow(violationOf(before, row), 2) / squares, 1e-4);
 }
 
+// v^2/(2 rho) + (v0 - v)^2/(2 sum w^2) is least for v = v0 rho/(sum w^2 + rho); one visit is enough, however soft the row.
+TEST(RowAscent, OneSoftRowIsMetAsFarAsItIsWorthInOneVisit) {
+    for (const float rho : {0.01f, 1.0f, 100.0f}) {
+        BSplineField field = randomField(8, 3);
+        const FieldRow row{{3.3, 3.6, 2.9}, 1, 2.0f, rho};
+        const auto w = denseRow(row.at, 8);
+        const double squares = std::inner_product(w.begin(), w.end(), w.begin(), 0.0),
+                     before = violationOf(field, row);
+        const AscentReport report = ascend(field, {row}, {.tolerance = 1e-7});
+        EXPECT_NEAR(violationOf(field, row), before * rho / (squares + rho), 1e-5) << rho;
+        EXPECT_TRUE(report.settled) << rho;
+        EXPECT_LE(report.rounds, 2) << rho;
+    }
+}
+
 TEST(RowAscent, MeetsHardRowsAndNoSmallChangeIsCheaper) {
     const BSplineField before = randomField(24, 5);
     std::vector<FieldRow> rows = randomRows(700, 24, 6);
@@ -309,6 +324,19 @@ TEST(RowAscent, KeepsWhatIsNotKnownAndMeetsTheRowsByTheRest) {
     EXPECT_EQ(report.unmet, 2);
     EXPECT_EQ(field.controlPoints->activeVoxelCount(), 16u * (16 * 17 / 2));
     for (auto voxel = field.controlPoints->cbeginValueOff(); voxel; ++voxel) ASSERT_EQ(*voxel, 1.0f);
+}
+
+// The length of its step counts the weights of known control points alone.
+TEST(RowAscent, ARowAcrossTheBorderIsMetInOneVisit) {
+    BSplineField field = randomField(16, 15);
+    auto accessor = field.controlPoints->getAccessor();
+    for (int x = 8; x < 16; ++x)
+        for (int y = 0; y < 16; ++y)
+            for (int z = 0; z < 16; ++z) accessor.setValueOff(Coord(x, y, z), 1.0f);
+    const FieldRow row{{7.5, 7.5, 7.5}, 1, 0.3f};  // half of its control points are known
+    const AscentReport report = ascend(field, {row}, {.tolerance = 1e-6});
+    EXPECT_NEAR(evaluate(field, row.at), -0.3, 1e-5);
+    EXPECT_LE(report.rounds, 2);
 }
 
 TEST(RowAscent, PlacesFarFromEachOtherDoNotKnowOfEachOther) {
