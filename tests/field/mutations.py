@@ -15,7 +15,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MOST_SECONDS = 600
 INTERVAL = ("wavelets_interval_tests", "*")
-TABLE = ("polygonize_tests", "CellTable*:Guarantee*:Polygonize*:RandomSigns*")
+TABLE = ("polygonize_tests", "CellTable*")
+CROSSING = ("simplify_tests", "CellTable*")
 ASCENT = ("volume_tests", "RowAscent*")
 HOLD = ("hold_tests", "LevelHold*:Hold*")
 
@@ -55,13 +56,13 @@ EDITS = [
     (TABLE, "polygonize/cell_table.cpp", "signs.inside(low) == inside ? low", "signs.inside(low) != inside ? low"),
     (TABLE, "polygonize/cell_table.cpp", "(isSide ? 0 : squaredDistance", "(isSide ? 0 : -squaredDistance"),
     (TABLE, "polygonize/cell_table.cpp", "if (!isSide && (facesOfEdge", "if (isSide && (facesOfEdge"),
-    (TABLE, "polygonize/cell_table.cpp", "loop.size() > 9", "loop.size() > 12"),
-    (TABLE, "polygonize/cell_table.cpp", "isLong) > 1", "isLong) > 2"),
-    (TABLE, "polygonize/cell_table.cpp", "(length - 1) / 2", "0"),
+    (CROSSING, "polygonize/cell_table.cpp", "loop.size() > 9", "loop.size() > 12"),
+    (CROSSING, "polygonize/cell_table.cpp", "isLong) > 1", "isLong) > 2"),
+    (CROSSING, "polygonize/cell_table.cpp", "(length - 1) / 2", "0"),
     (TABLE, "polygonize/cell_table.cpp", "if (!middleInside) std::swap", "if (middleInside) std::swap"),
     (TABLE, "polygonize/cell_table.cpp", "return loops.size() > 1 ||", "return loops.size() > 2 ||"),
     (TABLE, "polygonize/cell_table.cpp", "loopsAt[region] == 1 ?", "loopsAt[region] >= 1 ?"),
-    (TABLE, "polygonize/cell_table.cpp", "index >> from++ & 1", "index >> bit & 1"),
+    (TABLE, "polygonize/cell_table.cpp", "index >> from++ & 1", "index >> from & 1"),
     (TABLE, "polygonize/cell_table.cpp", "!= 0) << to++", "!= 0) << to"),
 
     (ASCENT, "volume/row_ascent.cpp", "r - row.rho * row.lambda", "r - 0 * row.lambda"),
