@@ -79,7 +79,6 @@ EDITS = [
     (ASCENT, "volume/row_ascent.cpp", "given.at[a] - (first[a] + 1)", "given.at[a] - first[a]"),
 
     (HOLD, "hold/hold.cpp", "half(s) - s.thickness / 2)", "half(s) - s.thickness)"),
-    (HOLD, "hold/hold.cpp", "s.length <= kLongestRun * H &&", ""),
     (HOLD, "hold/hold.cpp", "row(x - step, 1, 0", "row(x + step, 1, 0"),
     (HOLD, "hold/hold.cpp", "/ (2 * refine_)", "/ refine_"),
     (HOLD, "hold/hold.cpp", "row(inner, 1, 0", "row(inner, -1, 0"),

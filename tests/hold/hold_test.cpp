@@ -158,6 +158,9 @@ TEST(LevelHold, WhatIsThickKeepsItsBits) {
     HoldReport report;
     EXPECT_EQ(valuesOf(levels.held(1, &report)), valuesOf(levels.plain));
     EXPECT_EQ(report.samples, 0);
+    EXPECT_EQ(levels.hold->refineFor(levels.plain), 1);  // and asks for no finer sampling
+    const Levels thin(0.5 * kH);
+    EXPECT_GT(thin.hold->refineFor(thin.plain), 1);
 }
 
 TEST(LevelHold, TheLevelsGivenStayAsTheyAre) {
