@@ -7,6 +7,7 @@ beside them. The same bytes every time.
 import gzip
 import json
 import pathlib
+import shutil
 import struct
 import sys
 import zlib
@@ -402,6 +403,8 @@ FROM_DATA = {"stl": ["broken_stl/*.stl"], "off": ["meshes/pinion.off"], "obj": [
 def main():
     out = pathlib.Path(sys.argv[1])
     made = [*meshes(), *images(), *pictures(), *vectors(), *shapes(), *own()]
+    for target in {name.split("/")[0] for name, _ in made}:
+        shutil.rmtree(out / target, ignore_errors=True)  # what an earlier version made is no seed of this one
     for name, data in made:
         (out / name).parent.mkdir(parents=True, exist_ok=True)
         (out / name).write_bytes(data)

@@ -158,8 +158,12 @@ TEST(LevelHold, WhatIsThickKeepsItsBits) {
     HoldReport report;
     EXPECT_EQ(valuesOf(levels.held(1, &report)), valuesOf(levels.plain));
     EXPECT_EQ(report.samples, 0);
-    EXPECT_EQ(levels.hold->refineFor(levels.plain), 1);  // and asks for no finer sampling
-    const Levels thin(0.5 * kH);
+}
+
+TEST(LevelHold, WhatIsThickAsksForNoFinerSampling) {
+    const Levels thick(4 * kH), bar(2 * kH), thin(0.5 * kH);
+    EXPECT_EQ(thick.hold->refineFor(thick.plain), 1);
+    EXPECT_EQ(bar.hold->refineFor(bar.plain), 2);  // triangles on a lattice of H would cut its corners
     EXPECT_GT(thin.hold->refineFor(thin.plain), 1);
 }
 
