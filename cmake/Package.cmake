@@ -5,13 +5,14 @@
 #
 #   tool     isowave            the command, man pages, completion
 #   dev      libisowave-dev     headers, libraries, CMake package
-#
-# Another one, such as python (python3-isowave), needs `install(... COMPONENT python)` where its files are made, and here its
-# name in CPACK_COMPONENTS_ALL with the four CPACK_DEBIAN_PYTHON_... lines like those of TOOL. Its Depends: python3, python3-numpy.
+#   python   python3-isowave    the Python module, with -DISOWAVE_PYTHON=ON
 set(ISOWAVE_MAINTAINER "isowave <isowave@packages.invalid>" CACHE STRING "who makes the packages: Name <address>")
 
 install(FILES LICENSE cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/isowave COMPONENT tool)
 install(FILES LICENSE cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libisowave-dev COMPONENT dev)
+if(ISOWAVE_PYTHON)
+  install(FILES LICENSE cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-isowave COMPONENT python)
+endif()
 
 # What is installed is built by this target. Without the next line cpack would first build everything there is, tests too.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
@@ -24,9 +25,15 @@ endforeach()
 if(ISOWAVE_SHARED)
   add_dependencies(isowave_installed isowave_shared)
 endif()
+if(ISOWAVE_PYTHON)
+  add_dependencies(isowave_installed isowave_python)
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL tool dev)
+if(ISOWAVE_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGE_NAME isowave)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -49,5 +56,14 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-iostreams-dev, li
 zlib1g-dev, libfmt-dev, libgmp-dev, libmpfr-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "isowave, cmake, g++")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "The library: headers, static libraries and a CMake package.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-isowave)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+  "${PROJECT_SOURCE_DIR}/cmake/python3-isowave/postinst;${PROJECT_SOURCE_DIR}/cmake/python3-isowave/prerm")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-nibabel")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module: NumPy arrays and files in, meshes and reports out.")
 
 include(CPack)
