@@ -7,11 +7,15 @@ namespace isowave::lod {
 
 Solid::State openPyramid(const std::filesystem::path& path, int finestStep, StageClock& clock) {
     const StageClock::Scope scope(clock, "read");
+    return stateOf(wavelets::readPyramid(path, finestStep), path.string());
+}
+
+Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
     Solid::State solid;
-    solid.pyramid = wavelets::readPyramid(path, finestStep);
+    solid.pyramid = std::move(pyramid);
     const auto& source = solid.pyramid->source;
     InputReport& input = solid.input;
-    input.path = path.string();
+    input.path = name;
     input.kind = InputReport::Kind::pyramid;
     input.source = source;
     input.madeFrom = inputOfSource(source);

@@ -2,6 +2,7 @@
 
 #include "isowave/error.h"
 #include "lod/field_state.h"
+#include "lod/open_pyramid.h"
 #include "lod/pyramid_state.h"
 #include "lod/source.h"
 #include "lod/steps.h"
@@ -34,6 +35,10 @@ Pyramid analyse(Solid solid, const Progress& progress) {
     wavelets::Pyramid pyramid = wavelets::analyse(SolidAccess::takeField(std::move(solid)), {}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));
+}
+
+Solid solidOf(const Pyramid& pyramid) {
+    return SolidAccess::make(lod::stateOf(PyramidAccess::of(pyramid), "pyramid"));
 }
 
 }  // namespace isowave

@@ -54,9 +54,11 @@ void gather(const openvdb::FloatTree& levelSet, float iso, const openvdb::Coord&
 }  // namespace
 
 openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress) {
+                                          const Progress& progress,
+                                          const std::function<void(std::int64_t points)>& allow) {
     const NodeCollection nodes = nodesFromImage(stream, solid, progress);
     const std::vector<openvdb::Coord> origins = leavesWithin(nodes, CrossingDistances::kReach);
+    if (allow) allow(static_cast<std::int64_t>(origins.size()) * FloatLeaf::SIZE);
     std::vector<FloatLeafPtr> leaves(origins.size());
     ImageSamples image(stream.header(), solid);
     std::size_t made = 0;

@@ -70,4 +70,8 @@ class ISOWAVE_EXPORT Pyramid {
 // Throws UsageError for a solid that is a pyramid already; Cancelled.
 ISOWAVE_EXPORT Pyramid analyse(Solid solid, const Progress& progress = {});
 
+// The solid that was taken apart, as open() gives it of the pyramid's file: levels are read off the pyramid, nothing is
+// analysed again. It shares the pyramid's memory.
+ISOWAVE_EXPORT Solid solidOf(const Pyramid& pyramid);
+
 }  // namespace isowave

@@ -94,6 +94,19 @@ void clampTo(openvdb::FloatTree& tree, const openvdb::BoolTree& inside, float w)
     });
 }
 
+// Crossings are ratios of samples: a power of two changes no bit of them, and squares of 1e-30 or 1e30 are no floats. Zero keeps its
+// sign.
+void bringNearOne(LeafSamples& samples) {
+    constexpr float kSmall = 1e-9f, kLarge = 1e9f;
+    float most = 0;
+    float* const first = &samples.values[0][0][0];
+    constexpr int kCount = LeafSamples::kSize * LeafSamples::kSize * LeafSamples::kSize;
+    for (int i = 0; i < kCount; ++i) most = std::max(most, std::abs(first[i]));
+    if (!(most > 0) || (most > kSmall && most < kLarge) || std::isinf(most)) return;
+    const int exponent = -std::ilogb(most);
+    for (int i = 0; i < kCount; ++i) first[i] = std::ldexp(first[i], exponent);
+}
+
 }  // namespace
 
 std::vector<Coord> leavesWithin(const NodeCollection& nodes, int reach) {
@@ -118,6 +131,7 @@ LeafMaker::LeafMaker(double halfWidth)
 
 FloatLeafPtr LeafMaker::make(const Coord& origin, bool xFastest) {
     std::array<float, 512> values;
+    bringNearOne(samples_);
     if (!distances_.compute(samples_, halfWidth_, values.data())) return nullptr;
     auto leaf = std::make_unique<FloatLeaf>(origin, 0.0f, false);
     float* out = leaf->buffer().data();
