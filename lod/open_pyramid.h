@@ -1,4 +1,4 @@
-// Pyramids that somebody made before.
+// Pyramids and packed solids that somebody made before.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,9 @@
 
 namespace isowave::lod {
 
-Solid::State openPyramid(const std::filesystem::path& path, int finestStep, StageClock& clock);
+// A packed solid (.iwz) becomes a field, whose steps are made of it as they are of any solid's; anything else is read as a
+// pyramid's file, from options.finestStep on.
+Solid::State openPyramid(const std::filesystem::path& path, const SolidOptions& options,
+                         const Progress& progress, StageClock& clock);
 
 }  // namespace isowave::lod

@@ -4,9 +4,9 @@
 namespace isowave::tools_test {
 namespace {
 
-const std::vector<std::string> kCommands{"lod",     "analyse", "mesh",      "field",        "info",
-                                         "check",   "compare", "filters",   "curve-levels", "relief",
-                                         "reverse", "rebuild", "subdivide", "help",         "completion"};
+const std::vector<std::string> kCommands{
+    "lod",          "analyse", "mesh",    "field",   "info",      "check", "compare",    "filters",
+    "curve-levels", "relief",  "reverse", "rebuild", "subdivide", "help",  "completion", "pack"};
 
 TEST(Help, ListsEverySubcommandAndEveryExitCode) {
     const std::string text = succeed({"--help"}).out;

@@ -1,0 +1,19 @@
+// Solids to and from packed files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "compress/packed_file.h"
+#include "isowave/pyramid.h"
+
+namespace isowave::lod {
+
+// Control points that unpacking has memory for: maxMemory as in SolidOptions.
+double mostPackedPoints(const std::optional<double>& maxMemory);
+
+// Of pyramids, to the bit. Throws as isowave::pack() does.
+void packExactly(const BSplineField& field, const std::map<std::string, std::string>& source,
+                 const std::filesystem::path& path);
+
+}  // namespace isowave::lod
