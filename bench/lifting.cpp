@@ -27,7 +27,7 @@ struct Mean {
 }  // namespace
 
 void LiftingStep::liftVertices(std::vector<Vec3>& p, Lift lift, bool inverse) const {
-    const auto [a, b] = lift;
+    const double a = lift.a, b = lift.b;
     const auto edges = static_cast<Index>(mesh_.vertices()),
                faces = edges + static_cast<Index>(mesh_.edges());
     const auto atEdges = [&] {
@@ -70,7 +70,7 @@ void LiftingStep::liftVertices(std::vector<Vec3>& p, Lift lift, bool inverse) co
 }
 
 void LiftingStep::liftFaces(std::vector<Vec3>& p, Lift lift, bool inverse) const {
-    const auto [a, b] = lift;
+    const double a = lift.a, b = lift.b;
     const auto edges = static_cast<Index>(mesh_.vertices()),
                faces = edges + static_cast<Index>(mesh_.edges());
     const auto atEdges = [&] {

@@ -18,6 +18,7 @@ namespace isowave::curves2d {
 namespace {
 
 constexpr double kLargest = 1e9;
+constexpr std::size_t kShown = 40;  // bytes of a piece of the file in a remark
 
 // Takes rings as they come from a file, checks and repairs them.
 class Collector {
@@ -63,7 +64,8 @@ class Collector {
         say(crossing_, "meeting themselves; inside is what an odd number of turns surrounds");
         if (others_.number)
             result_.remarks.push_back(fmt::format("{} geometries that are no polygons left out (first: {})",
-                                                  others_.number, others_.first));
+                                                  others_.number,
+                                                  messageOf(others_.first.substr(0, kShown))));
         return std::move(result_);
     }
     const std::string& name() const { return name_; }

@@ -24,6 +24,8 @@ using openvdb::Vec3f;
 
 constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
 constexpr double kFewThin = 0.01;  // of the surface: so little asks for no finer sampling of all of it
+constexpr double kCoarse = 3,
+                 kFewCoarse = 0.1;  // of H, of the surface: what one sample a voxel cuts the corners off
 constexpr double kFewThickened = 0.002, kFewThickenedAtLevel1 = 0.05;  // of what is thin
 constexpr double kLongestRun = 2;     // of H: a longer one runs along a wall rather than across it
 constexpr double kKnownDistance = 3;  // voxels: level 0's field is a distance up to there
@@ -113,6 +115,11 @@ class Rows {
                s.partVolume >= scale_.h[0] * scale_.h[1] * scale_.h[2];
     }
 
+    bool isCoarse(const ThinSample& s) const {
+        return s.thickness <= kCoarse * scale_.along(s.normal) &&
+               s.partVolume >= scale_.h[0] * scale_.h[1] * scale_.h[2];
+    }
+
     void choose(const std::vector<ThinSample>& samples) {
         std::vector<ThinSample> thin;
         for (const ThinSample& s : samples)
@@ -123,7 +130,22 @@ class Rows {
         for (const std::uint32_t i : kept) samples_.push_back(thin[i]);
     }
 
+    void chooseGaps() {
+        if (options_.closedGaps <= 0) return;
+        const double longest = kLongestRun * std::max({scale_.h[0], scale_.h[1], scale_.h[2]});
+        for (const ThinSample& s : thinSamplesOf(surface_, longest, Side::outside, progress_))
+            if (s.thickness <= options_.closedGaps * scale_.along(s.normal)) gaps_.push_back(Vec3d(s.at));
+        const auto kept = onePlacePerCell(
+            gaps_.size(), cell(), [&](std::uint32_t i) { return gaps_[i]; },
+            [](std::uint32_t) { return 0.0; });
+        std::vector<Vec3d> chosen;
+        for (const std::uint32_t i : kept) chosen.push_back(gaps_[i]);
+        gaps_ = std::move(chosen);
+    }
+
     void add() {
+        for (const Vec3d& x : gaps_) hard_.push_back(row(x, 1, options_.depth * scale_.H, options_.rhoHard));
+        if (samples_.empty()) return;
         std::vector<Vec3f> at;
         for (const ThinSample& s : samples_) at.push_back(s.at);
         grid_.emplace(at, scale_.H);
@@ -138,6 +160,7 @@ class Rows {
     }
 
     const std::vector<ThinSample>& samples() const { return samples_; }
+    const std::vector<Vec3d>& gaps() const { return gaps_; }
     const std::vector<FieldRow>& hard() const { return hard_; }
     const std::vector<FieldRow>& soft() const { return soft_; }
     double meanVoxel() const { return scale_.H; }
@@ -235,6 +258,7 @@ class Rows {
     HoldOptions options_;
     const Progress& progress_;
     std::vector<ThinSample> samples_;
+    std::vector<Vec3d> gaps_;              // to fill, their middles
     std::optional<PointGrid> grid_;        // of the samples
     std::vector<std::uint32_t> near_;      // points of the surface, one a cell
     std::vector<std::uint32_t> sampleOf_;  // of each the nearest sample
@@ -260,17 +284,18 @@ LevelHold::LevelHold(FinestSurface surface, BSplineField finest, const Progress&
       finest_(std::move(finest)),
       slope_(slopeOf(finest_, surface_)),
       area_(areaOf(surface_)),
-      samples_(thinSamplesOf(surface_, std::numeric_limits<double>::infinity(), progress)) {}
+      samples_(thinSamplesOf(surface_, std::numeric_limits<double>::infinity(), Side::inside, progress)) {}
 
 int LevelHold::refineFor(const BSplineField& level, const HoldOptions& options) const {
     const Rows rows(surface_, finest_, slope_, level, 2, options, {});
-    double thin = 0, thickened = 0;
+    double thin = 0, thickened = 0, coarse = 0;
     for (const ThinSample& s : samples_) {
+        if (rows.isCoarse(s)) coarse += s.area;
         if (!rows.isThin(s)) continue;
         thin += s.area;
         if (rows.grown(s) > 0) thickened += s.area;
     }
-    if (2 * thin <= kFewThin * area_) return 1;
+    if (2 * thin <= kFewThin * area_) return 2 * coarse <= kFewCoarse * area_ ? 1 : 2;
     // At level 1 four samples are four times level 0's triangles, at level 2 as many, from level 3 on few.
     const double H = rows.meanVoxel(), few = H < 3 ? kFewThickenedAtLevel1 : H < 7 ? kFewThickened : 0;
     return thickened > few * thin ? 4 : 2;
@@ -282,8 +307,10 @@ HoldReport LevelHold::apply(BSplineField& level, int refine, const HoldOptions& 
     HoldReport report;
     Rows rows(surface_, finest_, slope_, level, refine, options, progress);
     rows.choose(samples_);
+    rows.chooseGaps();
     report.samples = static_cast<std::int64_t>(rows.samples().size());
-    if (report.samples == 0) return report;
+    report.gaps = static_cast<std::int64_t>(rows.gaps().size());
+    if (report.samples == 0 && report.gaps == 0) return report;
     rows.add();
     for (const ThinSample& s : rows.samples()) report.thickened += rows.grown(s) > 0;
     report.insideBefore = countInside(level, rows);

@@ -11,6 +11,7 @@
 // and nowhere else is the surface asked to move:
 //
 //   hard    F(x) <= -depth H and F(x +- half n) <= 0                 at thin samples x, n across the wall
+//           F(x) <= -depth H                                         in the middle of gaps that are to close
 //   soft    F(p + (e + m) N) >= 0, F(p - m N) <= 0, m = margin H      at level 0's surface p, N its normal
 //           F(y) >= 0                                                 farther out, so that nothing swells between the samples
 //
@@ -35,6 +36,7 @@ struct HoldOptions {
     double rho = 0.3;             // of soft rows; the sum of a row's squared weights is 0.02 to 0.13
     double rhoHard = 0.002;       // of hard rows, as long as there are soft ones beside them
     int density = 4;              // samples per H
+    double closedGaps = 0;        // of H: narrower gaps between walls are filled. 0: none
 };
 
 struct HoldReport {
@@ -44,6 +46,7 @@ struct HoldReport {
     std::int64_t changed = 0;                   // control points
     std::int64_t insideBefore = 0, inside = 0;  // samples with F < 0, in the plain level and now
     std::int64_t thickened = 0;                 // samples where e > 0
+    std::int64_t gaps = 0;                      // places of gaps that are filled, one a cell of H/4
     int rounds = 0;
     bool settled = true;
 };
@@ -59,8 +62,8 @@ class LevelHold {
     static double widestVoxelFor(double thickness, const HoldOptions& options = {}) {
         return 4 * thickness / options.leastThickness;
     }
-    // How finely a mesh of the level should sample it: 1 where next to nothing is thin for it, 2, or 4 where walls would have to be
-    // thickened for 2.
+    // How finely a mesh of the level should sample it: 1 where next to nothing is thin for it or below three voxels, 2, or 4 where
+    // walls would have to be thickened for 2.
     int refineFor(const BSplineField& level, const HoldOptions& options = {}) const;
 
     // Corrects a level, a step of the same solid, for a mesh that samples it `refine` times.

@@ -58,11 +58,13 @@ std::vector<OnLine> verticesOnLines(const FinestSurface& surface) {
 }
 
 // thickness 0: not thin.
-ThinSample sampleBetween(const FinestSurface& surface, const OnLine& in, const OnLine& out, double longest) {
+ThinSample sampleBetween(const FinestSurface& surface, const OnLine& in, const OnLine& out, double longest,
+                         Side side) {
     ThinSample sample;
     const int axis = static_cast<int>(in.line >> 62);
     const double length = (out.along - in.along) / surface.refine;
-    const Vec3f nIn = surface.normals[in.vertex], nOut = surface.normals[out.vertex];
+    const float sign = side == Side::inside ? 1.0f : -1.0f;
+    const Vec3f nIn = sign * surface.normals[in.vertex], nOut = sign * surface.normals[out.vertex];
     if (!(length <= longest) || nIn[axis] >= 0 || nOut[axis] <= 0 || nIn.dot(nOut) > kOppositeNormals)
         return sample;
     sample.normal = (nOut - nIn).unit();
@@ -112,7 +114,7 @@ double areaOf(const FinestSurface& surface) {
     return area / (surface.refine * surface.refine);
 }
 
-std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest,
+std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, Side side,
                                       const Progress& progress) {
     const std::vector<OnLine> vertices = verticesOnLines(surface);
     std::vector<ThinSample> samples(vertices.size());
@@ -121,7 +123,8 @@ std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longe
                           progress.check();
                           for (std::size_t i = range.begin(); i != range.end(); ++i)
                               if (vertices[i - 1].line == vertices[i].line)
-                                  samples[i] = sampleBetween(surface, vertices[i - 1], vertices[i], longest);
+                                  samples[i] =
+                                      sampleBetween(surface, vertices[i - 1], vertices[i], longest, side);
                       });
     std::erase_if(samples, [](const ThinSample& s) { return !(s.thickness > 0); });
     return samples;

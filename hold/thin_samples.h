@@ -44,9 +44,12 @@ double areaOf(const FinestSurface& surface);
 // Every run whose ends' normals have at most this cosine (135 degrees apart): the two sides of a right-angled edge make 0.
 inline constexpr double kOppositeNormals = -0.7;
 
+// Runs through the solid, or through what is between two of its walls: a gap, whose sample's normal is across it too.
+enum class Side { inside, outside };
+
 // Runs no longer than `longest` (voxels), along the three axes in turn, along each in the order of the lines: the same for any
 // number of threads.
-std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest,
+std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, Side side = Side::inside,
                                       const Progress& progress = {});
 
 // How thick the thinnest share (0 to 1) of the walls are, weighted by area: the thickness in voxels and in world units, for

@@ -1,6 +1,7 @@
 // Collects the meshes of all steps, then makes one mesh a budget.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,10 @@ void checkBudgets(const BudgetOptions& options, bool openBorder);
 
 class Budgets {
   public:
-    // inputTriangles: what a ratio is a share of; nothing: the triangles of level 0.
-    Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles);
+    // inputTriangles: what a ratio is a share of; nothing: the triangles of level 0. input: what a tolerance refers to; null:
+    // level 0.
+    Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles,
+            std::shared_ptr<const TriangleMesh> input);
 
     bool wanted() const { return !asked_.empty(); }
     // REQUIRES: steps in ascending order, step 0 first; the mesh is not empty.
@@ -32,6 +35,7 @@ class Budgets {
         Budget budget;
         double ratio = 0;  // of the triangles that ratios are shares of, where not 0
     };
+    void measureInput(const std::string& name, const Progress& progress);
     BudgetLevel made(const Asked& asked, BudgetSolver& solver, const LadderVisitor& visitor,
                      const Progress& progress, StageClock& clock) const;
     BudgetReport asReport(const Asked& asked, const Budget& budget) const;
@@ -40,6 +44,8 @@ class Budgets {
     TopologyLimits limits_;
     std::vector<StepMesh> steps_;
     std::optional<std::int64_t> wholeTriangles_;
+    std::shared_ptr<const TriangleMesh> input_;
+    std::optional<double> level0ToInput_;  // no point of either is farther from the other
 };
 
 }  // namespace isowave::lod

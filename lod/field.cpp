@@ -1,7 +1,12 @@
 #include "isowave/field.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "isowave/openvdb.h"
 #include "lod/field_state.h"
+#include "lod/option_checks.h"
 #include "lod/steps.h"
 #include "polygonize/polygonize.h"
 #include "volume/vdb_file.h"
@@ -35,6 +40,11 @@ Point Field::gradient(const Point& world) const {
 }
 
 TriangleMesh Field::polygonize(const FieldMeshOptions& options, const Progress& progress) const {
+    lod::requireRefine(options.refine);
+    if (!(std::abs(options.iso) < K()))
+        throw UsageError(fmt::format(
+            "iso {:g} is not between -{:g} and {:g}, the least and the greatest value of the field",
+            options.iso, K(), K()));
     return isowave::polygonize(state_->field, {.refine = options.refine, .iso = options.iso}, progress);
 }
 

@@ -8,6 +8,7 @@
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "lod/memory.h"
+#include "lod/option_checks.h"
 #include "lod/source.h"
 #include "volume/distance.h"
 #include "volume/leaf_words.h"
@@ -46,6 +47,9 @@ Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
 }
 
 void checkFitOptions(const SolidOptions& options) {
+    requirePositive("--half-width", options.halfWidth);
+    requirePositive("--band", options.band);
+    requirePositive("--max-memory", options.maxMemory);
     const DistanceFitOptions defaults;
     const double halfWidth = options.halfWidth.value_or(defaults.halfWidth),
                  band = options.band.value_or(defaults.band);
@@ -78,7 +82,7 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
             const StageClock::Scope scope(clock, "distance");
             return samples.distance();
         }();
-        allow(kBytesPerBandPoint, grid->activeVoxelCount());
+        allow(samples.bytesPerBandPoint, grid->activeVoxelCount());
         const StageClock::Scope scope(clock, "fit");
         DistanceFitOptions options = fitting.distance;
         if (samples.walls)

@@ -6,6 +6,7 @@
 
 #include "base/stage_clock.h"
 #include "isowave/solid.h"
+#include "lod/memory.h"
 #include "lod/solid_state.h"
 #include "volume/fit.h"
 #include "volume/fit/fit_mask.h"
@@ -35,6 +36,7 @@ struct Samples {
     std::function<WallSummary(BSplineField& field, const openvdb::FloatGrid& distance,
                               const openvdb::Coord& shift)>
         walls = {};
+    double bytesPerBandPoint = kBytesPerBandPoint;
 };
 
 // Fills solid.field and solid.fit. remedy: what makes the job smaller. Throws InputError where the rest of the job would

@@ -59,8 +59,9 @@ std::optional<std::int64_t> trianglesOf(const Solid& solid) {
 class Maker {
   public:
     Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options,
-          const std::optional<Border>& openBorder, const InputTruth& truth, const LadderVisitor& visitor,
-          const Progress& progress, StageClock& clock)
+          const std::optional<Border>& openBorder, const InputTruth& truth,
+          std::shared_ptr<const TriangleMesh> input, const LadderVisitor& visitor, const Progress& progress,
+          StageClock& clock)
         : choice_(choice),
           budgets_(budgets),
           deviation_(options.deviation),
@@ -68,6 +69,7 @@ class Maker {
                   budgets.wanted() && !options.levels && !options.steps ? LevelMesher::Facts::ofBudget
                                                                         : LevelMesher::Facts::thinToo,
                   truth, progress, clock),
+          input_(std::move(input)),
           visitor_(visitor),
           progress_(progress),
           clock_(clock) {}
@@ -110,6 +112,7 @@ class Maker {
         const StageClock::Scope scope(clock_, "measure");
         if (vanished_) return;
         putDistances(report, made.mesh);
+        if (report.step == 0) putInputDistance(report, made.mesh);
         if (deviation_) putDeviation(report, made, progress_);
     }
 
@@ -123,10 +126,21 @@ class Maker {
             }
             distances = target_->distances(mesh, progress_);
         }
+        report.rmsToLevel0Error = distances.toReference.rmsError;
+        report.rmsFromLevel0Error = distances.fromReference.rmsError;
         report.rmsToLevel0 = distances.toReference.rms;
         report.maxToLevel0 = distances.toReference.max;
         report.rmsFromLevel0 = distances.fromReference.rms;
         report.maxFromLevel0 = distances.fromReference.max;
+    }
+
+    void putInputDistance(LevelReport& report, const TriangleMesh& level0) {
+        if (!input_ || !canMeasureDistances()) return;
+        target_ = makeReferenceSurface({level0.points, level0.triangles, {}});
+        const ReferenceSurface::Distances found = target_->distances(*input_, progress_);
+        report.toInput = {found.fromReference.rms, found.fromReference.max, found.toReference.rms,
+                          found.toReference.max};
+        input_.reset();
     }
 
     void handOn(LevelMesh& made, double begin) {
@@ -143,6 +157,7 @@ class Maker {
 
     void keepReference(TriangleMesh mesh) {
         if (!visitor_.level && !levels_.empty()) levels_.back().mesh = mesh;
+        if (target_) return;
         reference_ = std::move(mesh);
         reference_.normals = {};
     }
@@ -151,6 +166,7 @@ class Maker {
     Budgets& budgets_;
     bool deviation_;
     LevelMesher mesher_;
+    std::shared_ptr<const TriangleMesh> input_;  // until level 0 is measured against it
     const LadderVisitor& visitor_;
     const Progress& progress_;
     StageClock& clock_;
@@ -224,9 +240,10 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     StageClock clock(state.stages, state.seconds);
     const std::optional<lod::Border> border = state.openBorder;
     lod::checkBudgets(budgetOptions, border.has_value());
-    lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid));
+    lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid), state.surface);
     const lod::StepChoice choice(options, budgets.wanted());
-    lod::Maker maker(choice, budgets, options, border, lod::truthOf(solid), visitor, progress, clock);
+    lod::Maker maker(choice, budgets, options, border, lod::truthOf(solid), state.surface, visitor, progress,
+                     clock);
     Ladder ladder;
     ladder.input = solid.input();
     ladder.fit = solid.fit();

@@ -11,6 +11,7 @@
 #include "hold/hold.h"
 #include "hold/limit_level.h"
 #include "isowave/error.h"
+#include "lod/option_checks.h"
 #include "lod/simplifier.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
@@ -36,10 +37,15 @@ namespace {
 
 constexpr double kPreserved = 1e-4;      // of the volume to keep
 constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
+constexpr double kLittle = 0.03;         // of the volume: gaps with so much are filled
 constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
 constexpr int kFinestRefine = 4;         // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
+    requireRefine(options.refine.value_or(1));
+    requireAtLeast("--relax", options.relax, 0);
+    requireAtLeast("--max-genus", options.maxGenus, 0);
+    requireAtLeast("--max-parts", options.maxParts, 1);
     if (options.preserveVolume && options.hold == Holding::shift)
         throw UsageError(
             "--preserve-volume and --hold shift exclude each other: each chooses the iso-value of a level");
@@ -233,6 +239,21 @@ LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
         if (!isMore(countsOf(level.report.topology), countsOf(finer.report.topology))) break;
         level = std::move(finer);
     }
+    return withoutGaps(std::move(level), step, field);
+}
+
+// A gap narrower than the level's voxel closes in some places and not in others, and each opening left is a handle. Where cuts and
+// fills would be too many, or the gap holds little, all of it is filled.
+LevelMesh LevelMesher::withoutGaps(LevelMesh level, int step, const BSplineField& field) {
+    const auto tooMany = [&](const LevelMesh& l) { return excess(countsOf(l.report.topology), *before_); };
+    const double volume = level.report.topology.volume;
+    for (const double closed : {0.5, 1.0}) {
+        if (!before_ || tooMany(level) == 0) break;
+        LevelMesh filled = madeAt({level.report.refine, {}, closed}, step, field);
+        const bool isLittle = std::abs(filled.report.topology.volume - volume) <= kLittle * volume;
+        if (tooMany(filled) < tooMany(level) && (isLittle || tooMany(level) > kMostEdits))
+            level = std::move(filled);
+    }
     return level;
 }
 
@@ -407,17 +428,20 @@ bool LevelMesher::mustFall(int step) const {
 
 bool LevelMesher::holds(int step) const { return step != 0 && level0_ && level0_->hold; }
 
-void LevelMesher::hold(LevelMesh& level) const {
+void LevelMesher::hold(LevelMesh& level, double closedGaps) const {
     const StageClock::Scope scope(clock_, "hold");
     LevelReport& report = level.report;
-    const HoldReport held = level0_->hold->apply(level.field, report.refine, {}, progress_);
+    HoldOptions options;
+    options.closedGaps = closedGaps;
+    const HoldReport held = level0_->hold->apply(level.field, report.refine, options, progress_);
     const auto share = [&](std::int64_t inside) {
         return held.samples > 0 ? static_cast<double>(inside) / static_cast<double>(held.samples) : 1.0;
     };
     report.thinKept = share(held.inside);
     report.thinKeptAtIso0 = share(held.inside);
-    if (held.samples == 0) return;
-    report.hold = {held.samples, held.insideBefore, held.inside, held.thickened, held.changed, held.unmet};
+    if (held.samples == 0 && held.gaps == 0) return;
+    report.hold = {held.samples, held.insideBefore, held.inside, held.thickened,
+                   held.gaps,    held.changed,      held.unmet};
 }
 
 LevelMesh LevelMesher::madeAt(Sampled sampled, int step, const BSplineField& field) {
@@ -427,7 +451,7 @@ LevelMesh LevelMesher::madeAt(Sampled sampled, int step, const BSplineField& fie
     report.step = step;
     if (step % kStepsPerLevel == 0) report.level = step / kStepsPerLevel;
     report.refine = sampled.refine;
-    if (holds(step)) hold(level);
+    if (holds(step)) hold(level, sampled.closedGaps);
     std::optional<std::vector<double>> thin;
     if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, report.refine);
     level.iso = isoFor(level, thin);

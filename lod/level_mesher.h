@@ -61,18 +61,20 @@ class LevelMesher {
     struct Sampled {
         int refine = 1;
         TriangleMesh mesh = {};
+        double closedGaps = 0;  // HoldOptions
     };
     Sampled sampled(int step, const BSplineField& field);
     Sampled sampledLevel0(const BSplineField& field);
     Sampled sampledAsInput(const BSplineField& field) const;
     LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
     LevelMesh chosen(int step, const BSplineField& field);
+    LevelMesh withoutGaps(LevelMesh level, int step, const BSplineField& field);
     void limit(LevelMesh& level);
     void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin, TriangleMesh ready = {});
     LevelMesh madeAt(Sampled sampled, int step, const BSplineField& field);
     bool holds(int step) const;
     bool mustFall(int step) const;
-    void hold(LevelMesh& level) const;
+    void hold(LevelMesh& level, double closedGaps) const;
     void tellWalls(LevelReport& report) const;
     void tellDifference(const LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;

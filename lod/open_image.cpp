@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/image/view.h"
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
@@ -182,7 +183,8 @@ SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions
         seen.statistics = statisticsOf(stream, seen.label, progress);
         if (options.label) requireLabel(seen.statistics, name, *options.label);
     }
-    for (const std::string& warning : stream.header().warnings) progress.say(warning);
+    for (const std::string& warning : stream.header().warnings)
+        progress.say(fmt::format("{}: {}", name, warning));
     seen.stream.emplace(std::move(stream));
     return seen;
 }
@@ -208,13 +210,18 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
         seen.stream.reset();
         return result;
     };
+    const double limit = memoryLimit(options.maxMemory);
+    const std::string remedy = "crop or downsample it";
+    const auto allow = [&](std::int64_t points) {  // voxels that had to be decoded are still there
+        const double bytes = kBytesPerLeafPoint * static_cast<double>(points);
+        refuseTooLarge(name, bytes + static_cast<double>(seen.stream->bytesKept()), limit, remedy);
+    };
     const auto distance = [&] {
-        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress);
+        auto grid = distanceFromImage(*seen.stream, shape, fitting.distance.halfWidth, progress, allow);
         seen.stream.reset();
         return grid;
     };
-    fit(solid, fitting, {nodes, distance}, memoryLimit(options.maxMemory), "crop or downsample it", progress,
-        clock);
+    fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint}, limit, remedy, progress, clock);
     if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
         solid.input.volume = volumeInside(*solid.field->shape);
     requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
@@ -240,6 +247,15 @@ Solid::State openImage(const Image& image, const SolidOptions& options, const Pr
         return looked(ImageStream(image), "image", options, progress);
     }();
     return fitted(std::move(seen), "image", options, progress, clock);
+}
+
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock) {
+    SeenImage seen = [&] {
+        const StageClock::Scope scope(clock, "read");
+        return looked(ImageStream(voxels, options.image), imageio::kViewName, options, progress);
+    }();
+    return fitted(std::move(seen), imageio::kViewName, options, progress, clock);
 }
 
 ImageReadOptions imageReadOptions(const SolidOptions& options) {

@@ -14,6 +14,8 @@ Solid::State openImage(const std::filesystem::path& path, const SolidOptions& op
                        const Progress& progress, StageClock& clock);
 Solid::State openImage(const Image& image, const SolidOptions& options, const Progress& progress,
                        StageClock& clock);
+Solid::State openImage(const VoxelView& voxels, const SolidOptions& options, const Progress& progress,
+                       StageClock& clock);
 
 // What the readers of images are told. Throws UsageError for a headerless image whose size or type is missing.
 ImageReadOptions imageReadOptions(const SolidOptions& options);

@@ -14,6 +14,7 @@
 #include "isowave/measure.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "lod/option_checks.h"
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
 #include "volume/distance.h"
@@ -33,10 +34,16 @@ constexpr int kFinestRefine = 4;  // of polygonize()
 
 constexpr const char* kRemedy = "give fewer --voxels or a larger --voxel";
 
+constexpr std::int64_t kFewestVoxels = 4;
+
 // The least thickness of a plate, in voxels: below it is torn by the lattice.
 constexpr double kLeastThickness = 2;
 
 void checkOptions(const SolidOptions& options) {
+    requireAtLeast("--voxels", options.voxels, kFewestVoxels);
+    requirePositive("--voxel", options.voxel);
+    requirePositive("--close-holes", options.closeHoles);
+    requirePositive("--thicken", options.thicken);
     if (options.voxel && options.voxels)
         throw UsageError("--voxel and --voxels exclude each other; give one of them");
     if (options.closeHoles && options.thicken)
@@ -214,6 +221,8 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         signs.emplace(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
                       progress);
         putTruth(solid.input, input, voxel, points, *signs);
+        if (!input.repair.evenOdd && !signs->lines().hasOverlap())
+            solid.surface = std::make_shared<TriangleMesh>(TriangleMesh{mesh.points, mesh.triangles, {}});
     }
     const auto fitAll = [&](Solid::State& made, const FineSigns* between) {
         if (options.walls && signs)

@@ -1,8 +1,5 @@
 #include "lod/open_pyramid.h"
 
-#include <fmt/format.h>
-
-#include "compress/packed_file.h"
 #include "lod/packing/pack.h"
 #include "lod/source.h"
 #include "wavelets/pyramid_file.h"
@@ -19,12 +16,27 @@ Source read(const std::filesystem::path& path, const SolidOptions& options, cons
         solid.pyramid = wavelets::readPyramid(path, options.finestStep);
         return solid.pyramid->source;
     }
-    compress::PackedField packed = compress::readPacked(path, mostPackedPoints(options.maxMemory), progress);
-    if (packed.bound)
-        progress.say(fmt::format("{}: level 0 is within {:g} voxels of what was packed, not to the bit",
-                                 path.string(), *packed.bound));
+    compress::PackedField packed = openPacked(path, options.maxMemory, progress);
     solid.field = std::move(packed.field);
     return packed.source;
+}
+
+// What its file says of where it came from.
+void describe(Solid::State& solid, const std::string& name, const Source& source) {
+    InputReport& input = solid.input;
+    input.path = name;
+    input.kind = InputReport::Kind::pyramid;
+    input.source = source;
+    input.madeFrom = inputOfSource(source);
+    solid.fit = fitOfSource(source);
+    if (!input.madeFrom) return;
+    input.dimensions = input.madeFrom->dimensions;
+    input.spacing = input.madeFrom->spacing;
+    input.iso = input.madeFrom->iso;
+    input.volume = input.madeFrom->volume;
+    input.space = input.madeFrom->space;
+    solid.openBorder = borderOf(*input.madeFrom);
+    solid.space = input.space.value_or(Space::unspecified);
 }
 
 }  // namespace
@@ -34,20 +46,14 @@ Solid::State openPyramid(const std::filesystem::path& path, const SolidOptions& 
     const StageClock::Scope scope(clock, "read");
     Solid::State solid;
     const Source source = read(path, options, progress, solid);
-    InputReport& input = solid.input;
-    input.path = path.string();
-    input.kind = InputReport::Kind::pyramid;
-    input.source = source;
-    input.madeFrom = inputOfSource(source);
-    solid.fit = fitOfSource(source);
-    if (!input.madeFrom) return solid;
-    input.dimensions = input.madeFrom->dimensions;
-    input.spacing = input.madeFrom->spacing;
-    input.iso = input.madeFrom->iso;
-    input.volume = input.madeFrom->volume;
-    input.space = input.madeFrom->space;
-    solid.openBorder = borderOf(*input.madeFrom);
-    solid.space = input.space.value_or(Space::unspecified);
+    describe(solid, path.string(), source);
+    return solid;
+}
+
+Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
+    Solid::State solid;
+    solid.pyramid = std::move(pyramid);
+    describe(solid, name, solid.pyramid->source);
     return solid;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/stage_clock.h"
 #include "lod/solid_state.h"
@@ -12,5 +13,8 @@ namespace isowave::lod {
 // pyramid's file, from options.finestStep on.
 Solid::State openPyramid(const std::filesystem::path& path, const SolidOptions& options,
                          const Progress& progress, StageClock& clock);
+
+// name: what messages and reports call it.
+Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name);
 
 }  // namespace isowave::lod

@@ -3,6 +3,7 @@
 #include "compress/packed_file.h"
 #include "isowave/error.h"
 #include "lod/field_state.h"
+#include "lod/open_pyramid.h"
 #include "lod/packing/pack.h"
 #include "lod/pyramid_state.h"
 #include "lod/source.h"
@@ -11,10 +12,10 @@
 
 namespace isowave {
 
-Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep) {
+Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep, const Progress& progress) {
     if (!compress::isPackedPath(path)) return PyramidAccess::make(wavelets::readPyramid(path, finestStep));
-    compress::PackedField packed = compress::readPacked(path, lod::mostPackedPoints({}));
-    wavelets::Pyramid pyramid = wavelets::analyse(packed.field);
+    compress::PackedField packed = lod::openPacked(path, {}, progress);
+    wavelets::Pyramid pyramid = wavelets::analyse(packed.field, {}, progress);
     pyramid.source = std::move(packed.source);
     return PyramidAccess::make(std::move(pyramid));
 }
@@ -47,6 +48,10 @@ Pyramid analyse(Solid solid, const Progress& progress) {
     wavelets::Pyramid pyramid = wavelets::analyse(SolidAccess::takeField(std::move(solid)), {}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));
+}
+
+Solid solidOf(const Pyramid& pyramid) {
+    return SolidAccess::make(lod::stateOf(PyramidAccess::of(pyramid), "pyramid"));
 }
 
 }  // namespace isowave

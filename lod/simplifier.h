@@ -54,14 +54,15 @@ void requireSimplifier(std::string_view what);
 // A closed mesh down to at most `triangles`, its volume kept. No normals. REQUIRES: canMeasureDistances().
 TriangleMesh collapsedByVolume(const TriangleMesh& mesh, std::int64_t triangles, const Progress& progress);
 
-// Level 0, which coarser levels are measured against.
+// Level 0, which coarser levels and the mesh that was read are measured against.
 class ReferenceSurface {
   public:
+    // From samples, without bounds; the largest distance to the reference is that of all vertices and centroids.
     struct Distances {
-        OneSidedDistance toReference, fromReference;  // from samples, without bounds
+        OneSidedDistance toReference, fromReference;
     };
     virtual ~ReferenceSurface() = default;
-    virtual Distances distances(const TriangleMesh& level, const Progress& progress) const = 0;
+    virtual Distances distances(const TriangleMesh& mesh, const Progress& progress) const = 0;
 };
 // REQUIRES: canMeasureDistances(); at least one triangle.
 std::unique_ptr<ReferenceSurface> makeReferenceSurface(TriangleMesh mesh);

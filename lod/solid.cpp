@@ -6,6 +6,7 @@
 
 #include "compress/packed_file.h"
 #include "io/image/formats/foreign.h"
+#include "io/image/view.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "isowave/openvdb.h"
@@ -147,6 +148,12 @@ Solid open(const Image& image, const SolidOptions& options, const Progress& prog
     lod::checkFitOptions(options);
     return lod::opened("image", lod::InputKind::image, options,
                        [&](StageClock& clock) { return lod::openImage(image, options, progress, clock); });
+}
+
+Solid open(const VoxelView& voxels, const SolidOptions& options, const Progress& progress) {
+    lod::checkFitOptions(options);
+    return lod::opened(imageio::kViewName, lod::InputKind::image, options,
+                       [&](StageClock& clock) { return lod::openImage(voxels, options, progress, clock); });
 }
 
 Solid open(const openvdb::FloatGrid& levelSet, const SolidOptions& options, const Progress& progress) {

@@ -1,6 +1,9 @@
 // What is behind a Solid, for isowave's own sources.
 #pragma once
 
+#include <memory>
+
+#include "isowave/mesh.h"
 #include "isowave/solid.h"
 #include "volume/field.h"
 #include "wavelets/pyramid.h"
@@ -24,6 +27,8 @@ struct Solid::State {
     Space space = Space::unspecified;
     std::optional<lod::Border> openBorder;
     InputReport input;
+    // The mesh that was read, mended, where it bounds the solid: closed, no part in another.
+    std::shared_ptr<const TriangleMesh> surface;
     std::optional<FitSummary> fit;
     std::vector<StageSeconds> stages;
     double seconds = 0;

@@ -1,12 +1,25 @@
 #include "lod/step_choice.h"
 
 #include "isowave/error.h"
+#include "lod/option_checks.h"
 
 namespace isowave {
+namespace {
+
+void requireSteps(const char* option, const std::optional<StepRange>& range) {
+    if (!range) return;
+    lod::requireAtLeast(option, range->first, 0);
+    if (range->last && *range->last < range->first)
+        throw UsageError(fmt::format("{}: {}..{} ends before it begins", option, range->first, *range->last));
+}
+
+}  // namespace
 
 void checkRanges(const LevelOptions& options) {
     if (options.levels && options.steps)
         throw UsageError("--levels and --steps exclude each other; level L is step 3L");
+    requireSteps("--levels", options.levels);
+    requireSteps("--steps", options.steps);
 }
 
 namespace lod {

@@ -9,6 +9,7 @@
 #include "simplify/distance.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -133,12 +134,16 @@ class UncertainPieces {
 
 struct Sums {
     double weight = 0, distance = 0, square = 0, max = 0, maxBound = 0;
+    double weight2 = 0, weight2square = 0, weight2fourth = 0;  // squared weights times 1, d^2, d^4
     std::int64_t samples = 0;
 
     void add(const Sums& other) {
         weight += other.weight;
         distance += other.distance;
         square += other.square;
+        weight2 += other.weight2;
+        weight2square += other.weight2square;
+        weight2fourth += other.weight2fourth;
         max = std::max(max, other.max);
         maxBound = std::max(maxBound, other.maxBound);
         samples += other.samples;
@@ -154,8 +159,21 @@ void addPiece(const Piece& piece, const Sample& centroid, double weight, Sums& s
     const double corners2 = squared(a.distance) + squared(b.distance) + squared(c.distance);
     sums.weight += weight;
     sums.distance += weight / 12 * (corners + 9 * centroid.distance);
-    sums.square += weight / 12 * (corners2 + 9 * squared(centroid.distance));
+    const double square = (corners2 + 9 * squared(centroid.distance)) / 12;
+    sums.square += weight * square;
+    sums.weight2 += weight * weight;
+    sums.weight2square += weight * weight * square;
+    sums.weight2fourth += weight * weight * square * square;
     sums.max = std::max({sums.max, a.distance, b.distance, c.distance, centroid.distance});
+}
+
+// Of a weighted mean m = sum w v / sum w of independent values: its variance is sum w^2 (v - m)^2 / (sum w)^2; and d rms = dm / (2 rms).
+double rmsErrorOf(const Sums& sums) {
+    constexpr double kDeviations = 1.96;  // 95 %
+    const double mean = sums.square / sums.weight;
+    const double spread = sums.weight2fourth - 2 * mean * sums.weight2square + mean * mean * sums.weight2;
+    return mean > 0 ? kDeviations * std::sqrt(std::max(0.0, spread)) / sums.weight / (2 * std::sqrt(mean))
+                    : 0;
 }
 
 double coveringRadius(const Piece& piece, const Vec3& centroid) {
@@ -362,6 +380,28 @@ double DistanceTarget::squaredBeyond(const Point& p, double enough) const {
     return tree_->nearest(toVec3(p), enough).squared;
 }
 
+double DistanceTarget::farthestSample(const TriangleMesh& from, double atLeast,
+                                      const Progress& progress) const {
+    constexpr std::size_t kGrain = 1024;
+    const std::size_t points = from.points.size();
+    const auto sampleAt = [&](std::size_t i) {
+        if (i < points) return from.points[i];
+        const auto& [a, b, c] = from.triangles[i - points];
+        const Vec3 middle = (toVec3(from.points[a]) + toVec3(from.points[b]) + toVec3(from.points[c])) / 3;
+        return Point{middle.x, middle.y, middle.z};
+    };
+    const double squared = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, points + from.triangles.size(), kGrain), atLeast * atLeast,
+        [&](const auto& range, double largest) {
+            progress.check();
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                largest = std::max(largest, squaredBeyond(sampleAt(i), largest));
+            return largest;
+        },
+        [](double a, double b) { return std::max(a, b); });
+    return std::sqrt(squared);
+}
+
 NearestPoint DistanceTarget::nearest(const Point& p) const {
     const std::uint32_t triangle = tree_->sampleAt(toVec3(p)).nearest;
     const Vec3 at = tree_->nearestOn(toVec3(p), triangle);
@@ -432,7 +472,8 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
                 total.max,
                 std::numeric_limits<double>::infinity(),
                 area,
-                total.samples};
+                total.samples,
+                rmsErrorOf(total)};
 
     std::vector<BoundedPiece> pieces;
     double restBound = 0;
@@ -450,7 +491,8 @@ OneSidedDistance DistanceTarget::measured(const TriangleMesh& from, double spaci
             std::min(std::max(maximum.bound, std::min(wanted, total.maxBound)),
                      std::max(total.maxBound, maximum.found)),
             area,
-            total.samples + maximum.samples};
+            total.samples + maximum.samples,
+            0};
 }
 
 // ---- both sides

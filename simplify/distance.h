@@ -34,6 +34,9 @@ class DistanceTarget {
     // The squared distance of p where it is above `enough`, else any number that is no larger than that. Much
     // faster than distance() where most points are that near.
     double squaredBeyond(const Point& p, double enough) const;
+    // The distance of the vertex or centroid farthest away, or `atLeast` where none is farther. Most cost little.
+    // REQUIRES: every point is used by a triangle.
+    double farthestSample(const TriangleMesh& from, double atLeast, const Progress& progress = {}) const;
 
     // spacing: world units (0.5 = half a millimetre for images); 0 = corners and centroids of triangles only.
     // enough: a limit that the caller wants proven; maxBound is not lowered any further once it is below.
@@ -42,7 +45,8 @@ class DistanceTarget {
     // An empty `from` gives zeros. The same result, to the bit, for any number of threads.
     OneSidedDistance distanceFrom(const TriangleMesh& from, double spacing = 0, const Progress& progress = {},
                                   double enough = 0) const;
-    // The same samples, without a bound (maxBound is infinite): no piece is kept, none halved once more.
+    // The same samples, without a bound (maxBound is infinite): no piece is kept, none halved once more. rmsError: as for a
+    // surface of which `from` is a sample.
     OneSidedDistance sampledDistanceFrom(const TriangleMesh& from, double spacing = 0,
                                          const Progress& progress = {}) const;
 

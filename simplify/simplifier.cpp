@@ -1,6 +1,9 @@
 // lod/simplifier.h with CGAL: what the workflow asks for, by what this folder has.
 #include "lod/simplifier.h"
 
+#include <cmath>
+
+#include "base/triangle.h"
 #include "simplify/budget_chooser.h"
 #include "simplify/collapse.h"
 #include "simplify/distance.h"
@@ -14,23 +17,44 @@ bool canMeasureDistances() { return true; }
 namespace lod {
 namespace {
 
-// From level 0 to a coarser level, which is far from most of it, the nearest triangle takes long to find: so
-// many triangles of level 0, evenly chosen, are enough for an rms to three digits and see every speck of a
-// few hundredths of a percent of the surface. In the other direction every vertex and centroid counts.
-constexpr std::size_t kReferenceTriangles = 50'000;
+// So many triangles, evenly chosen, give an rms to two or three digits (rmsError says how many) and see every speck of a few
+// hundredths of a percent of the surface. Of a level the largest distance is that of all its vertices and centroids: most of them are
+// known to be nearer than it after a few boxes.
+constexpr std::size_t kSampleTriangles = 50'000;
 
-class Reference : public ReferenceSurface {
+// Some triangles of a fine mesh; all of a coarse one, cut into about as many pieces.
+class Sample {
   public:
-    explicit Reference(TriangleMesh mesh)
-        : sample_(evenSubset(mesh, kReferenceTriangles)), target_(std::move(mesh)) {}
-
-    Distances distances(const TriangleMesh& level, const Progress& progress) const override {
-        const OneSidedDistance to = target_.sampledDistanceFrom(level, 0, progress);
-        return {to, DistanceTarget(level).sampledDistanceFrom(sample_, 0, progress)};
+    explicit Sample(const TriangleMesh& mesh)
+        : some_(evenSubset(mesh, kSampleTriangles)), spacing_(spacingFor(mesh)) {}
+    OneSidedDistance to(const DistanceTarget& target, const Progress& progress) const {
+        return target.sampledDistanceFrom(some_, spacing_, progress);
     }
 
   private:
-    TriangleMesh sample_;
+    // 0: the triangles as they are.
+    static double spacingFor(const TriangleMesh& mesh) {
+        if (mesh.triangles.size() > kSampleTriangles / 4) return 0;
+        double twiceArea = 0;
+        for (const Triangle& t : mesh.triangles) twiceArea += length(areaNormal(mesh, t));
+        return std::sqrt(twiceArea / kSampleTriangles);
+    }
+    TriangleMesh some_;
+    double spacing_;
+};
+
+class Reference : public ReferenceSurface {
+  public:
+    explicit Reference(TriangleMesh mesh) : sample_(mesh), target_(std::move(mesh)) {}
+
+    Distances distances(const TriangleMesh& level, const Progress& progress) const override {
+        OneSidedDistance to = Sample(level).to(target_, progress);
+        to.max = target_.farthestSample(level, to.max, progress);
+        return {to, sample_.to(DistanceTarget(level), progress)};
+    }
+
+  private:
+    Sample sample_;
     DistanceTarget target_;
 };
 

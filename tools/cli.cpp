@@ -43,7 +43,9 @@ void takeArguments(const ParsedCommand& parsed) {
     Command& command = *parsed.command;
     const std::string name(command.name()), expected(command.description().arguments);
     const auto found = static_cast<int>(parsed.arguments.size());
-    if (found == command.argumentCount() || (expected.front() == '[' && found == 0)) {
+    const bool enough =
+        command.takesMore() ? found >= command.argumentCount() : found == command.argumentCount();
+    if (enough || (expected.front() == '[' && found == 0)) {
         for (const std::string& argument : parsed.arguments) {
             if (argument.empty()) throw UsageError(name + ": the name of a file is empty");
             command.arguments.emplace_back(argument);

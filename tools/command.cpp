@@ -90,11 +90,16 @@ void Command::openJson() {
     jsonFile_.emplace(*json_);
 }
 
-void Command::tell(Console& console, const std::string& text, const std::string& json) {
+void Command::readyToTell(Console& console, const std::string& json) {
     console.progress().check();
     openJson();
+    if (jsonFile_) writeWhole(*jsonFile_, json);
+    readyToTell_ = true;
+}
+
+void Command::tell(Console& console, const std::string& text, const std::string& json) {
+    if (!readyToTell_) readyToTell(console, json);
     if (jsonFile_) {
-        writeWhole(*jsonFile_, json);
         jsonFile_->commit();
         jsonFolders_->commit();
     }

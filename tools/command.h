@@ -61,9 +61,10 @@ class Command {
   public:
     struct Description {
         std::string_view name;
-        std::string_view arguments;  // "INPUT", "A B", "[SUBDIVISION]": one positional argument a word
-        std::string_view summary;    // one line
-        std::string_view details;    // a paragraph for --help
+        std::string_view
+            arguments;  // "INPUT", "A B", "[SUBDIVISION]", "INPUT..." (one or more): one positional argument a word
+        std::string_view summary;  // one line
+        std::string_view details;  // a paragraph for --help
     };
 
     explicit Command(const Description& description) : description_(description) {}
@@ -75,6 +76,8 @@ class Command {
     std::string_view name() const { return description_.name; }
     const OptionList& options() const { return options_; }
     int argumentCount() const;
+    // "INPUT...": or more than that.
+    bool takesMore() const { return description_.arguments.ends_with("..."); }
     // An existing file that does not begin as reports do, {"version", is not replaced by --json. Throws UsageError.
     void refuseToReplaceWhatIsNoReport() const;
     // Whether -o must be given.
@@ -93,6 +96,7 @@ class Command {
     Description description_;
     std::optional<OutputFile> jsonFolders_;
     std::optional<AtomicFile> jsonFile_;
+    bool readyToTell_ = false;
 
   protected:
     OptionList options_;
@@ -108,8 +112,12 @@ class Command {
     bool jsonToFile() const { return json_ && *json_ != "-"; }
     // Finds out at once whether the file of --json can be written, before there are other results. Throws OperationError.
     void openJson();
+    // For commands that have other results: call it before the first of them takes its place. All that may still stop the
+    // command, a wish or a disk without room for --json's file, stops it here; tell() then only renames and prints. Throws
+    // Cancelled, OperationError.
+    void readyToTell(Console& console, const std::string& json);
     // What the command has to tell: `text` to standard output and, with --json, `json` to its file or, for -, in place of the
-    // text. Nothing is told once a stop was asked for. Throws OperationError.
+    // text. Does what readyToTell() does where nobody has called it.
     void tell(Console& console, const std::string& text, const std::string& json);
 };
 

@@ -8,8 +8,8 @@ Commands allCommands() {
     Commands commands;
     for (const auto& make :
          {lodCommand, analyseCommand, packCommand, meshCommand, fieldCommand, infoCommand, checkCommand,
-          compareCommand, filtersCommand, curveLevelsCommand, reliefCommand, reverseCommand, rebuildCommand,
-          subdivideCommand, curvesCommand, helpCommand, completionCommand})
+          compareCommand, viewCommand, filtersCommand, curveLevelsCommand, reliefCommand, reverseCommand,
+          rebuildCommand, subdivideCommand, curvesCommand, helpCommand, completionCommand})
         commands.push_back(make());
     return commands;
 }

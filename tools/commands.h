@@ -24,6 +24,8 @@ std::unique_ptr<Command> fieldCommand();
 std::unique_ptr<Command> infoCommand();
 std::unique_ptr<Command> checkCommand();
 std::unique_ptr<Command> compareCommand();
+// tools/view/
+std::unique_ptr<Command> viewCommand();
 // tools/subdivision/
 std::unique_ptr<Command> filtersCommand();
 std::unique_ptr<Command> curveLevelsCommand();

@@ -146,9 +146,9 @@ void OutputFolder::commit() {
 }
 
 // A list of renamings of which all are done, or none.
-//   old files:  folder/name        -> hidden/replaced/name
+//   old files:  folder/name        -> hidden/replaced/name, as a second name, or by renaming where a disk has no links
 //   new files:  hidden/name        -> folder/name
-// Undone backwards, each in turn, when one fails.
+// Undone backwards, each in turn, when one fails. Killed between two of them, every name has its old file or its new one.
 void OutputFolder::replaceFiles() {
     const fs::path replaced = hidden_ / "replaced";
     std::vector<std::pair<fs::path, fs::path>> done;
@@ -158,10 +158,16 @@ void OutputFolder::replaceFiles() {
         if (!error) done.emplace_back(from, to);
         return !error;
     };
+    const auto setAside = [&](const fs::path& from, const fs::path& to) {
+        fs::create_hard_link(from, to, error);
+        if (error) return move(from, to);
+        done.emplace_back(from, to);
+        return true;
+    };
     const auto replace = [&](const std::string& name) {
         std::error_code ignored;
         const bool there = fs::exists(fs::symlink_status(folder_ / name, ignored));
-        return (!there || move(folder_ / name, replaced / name)) && move(hidden_ / name, folder_ / name);
+        return (!there || setAside(folder_ / name, replaced / name)) && move(hidden_ / name, folder_ / name);
     };
     fs::create_directory(replaced, error);
     if (error)

@@ -11,12 +11,16 @@
 
 namespace isowave {
 
-// Distances, taken in index space, to the zero set of the voxels' trilinear interpolation (sub-voxel), by
-// openvdb::tools::FastSweeping. Throws InputError as linearTransform() does, and as ImageStream::pass() does.
+// Distances, taken in index space, to the zero set of the voxels' trilinear interpolation (sub-voxel), from the crossings of
+// lattice edges (distance/crossing_band.h). Throws InputError as linearTransform() does, and as ImageStream::pass() does.
 // Of a stream the voxels are read twice: once for the signs, once for the values in the band around the
 // surface.
+// allow: is told, between the two, how many lattice points the leaves of the band hold, kBytesPerLeafPoint each, and throws
+// where that is too many.
+inline constexpr double kBytesPerLeafPoint = 5;  // 512 floats, a mask and the leaf itself are 2.3 kB
 openvdb::FloatGrid::Ptr distanceFromImage(ImageStream& stream, const ImageSolid& solid, double halfWidth,
-                                          const Progress& progress = {});
+                                          const Progress& progress = {},
+                                          const std::function<void(std::int64_t points)>& allow = {});
 openvdb::FloatGrid::Ptr distanceFromImage(const Image& image, const ImageSolid& solid, double halfWidth,
                                           const Progress& progress = {});
 

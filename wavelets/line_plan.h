@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "base/vectors.h"
 #include "wavelets/interval/runs.h"
-#include "wavelets/interval/vectors.h"
 #include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {

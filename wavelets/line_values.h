@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/vectors.h"
 #include "volume/leaf_words.h"
-#include "wavelets/interval/vectors.h"
 #include "wavelets/line_bits.h"
 
 namespace isowave::wavelets {

@@ -13,33 +13,41 @@
 
 #include "isowave/version.h"
 
-#include "isowave/version.h"
-
 namespace isowave {
+
+// What every message below goes through. Control characters, which a damaged file brings into a message that shows a piece of it,
+// become '?': a message is one line and sends no commands to a terminal. What is longer than kLongestMessage bytes ends in "...".
+inline constexpr std::size_t kLongestMessage = 4000;
+inline std::string messageOf(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    if (text.size() > kLongestMessage) text.replace(kLongestMessage, text.npos, "...");
+    return text;
+}
 
 // Bad data. The message is one line that names the object, the place, what was found, what was expected and
 // what to do:  skull.nrrd: 'sizes' says 512x512x300 (157 MB) but the file holds 94 MB; it is truncated
 class ISOWAVE_EXPORT InputError : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit InputError(const std::string& line) : std::runtime_error(messageOf(line)) {}
     // object: the file, grid or mesh;  what: the rest of the line.
     InputError(const std::string& object, const std::string& what)
-        : std::runtime_error(object + ": " + what) {}
+        : std::runtime_error(messageOf(object + ": " + what)) {}
 };
 
 // Options contradict each other, or ask for what this kind of input does not have. The message names them as the command
 // spells them: "--voxel and --voxels exclude each other; give one of them".
 class ISOWAVE_EXPORT UsageError : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit UsageError(const std::string& line) : std::runtime_error(messageOf(line)) {}
 };
 
 // The operation itself failed: a file could not be written, memory would not suffice.
 class ISOWAVE_EXPORT OperationError : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit OperationError(const std::string& line) : std::runtime_error(messageOf(line)) {}
     OperationError(const std::string& object, const std::string& what)
-        : std::runtime_error(object + ": " + what) {}
+        : std::runtime_error(messageOf(object + ": " + what)) {}
 };
 
 }  // namespace isowave

@@ -38,7 +38,8 @@ class ISOWAVE_EXPORT Field {
     // By world units.
     Point gradient(const Point& world) const;
 
-    // The closed, oriented 2-manifold mesh of the zero set, with normals. Throws OperationError past 2^31 - 1 triangles.
+    // The closed, oriented 2-manifold mesh of the zero set, with normals. Throws OperationError past 2^31 - 1 triangles,
+    // UsageError for another refine or iso.
     TriangleMesh polygonize(const FieldMeshOptions& options = {}, const Progress& progress = {}) const;
 
     // As the one grid "field" of a .vdb: control points, negative inside, for Houdini, Blender and other tools. Throws

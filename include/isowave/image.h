@@ -52,6 +52,22 @@ struct Image {
     ISOWAVE_EXPORT std::array<double, 3> spacing() const;
 };
 
+// Voxels in memory of the caller's: a view, of which nothing is copied but a slab at a time while it is looked at.
+//
+//   std::vector<std::int16_t> scan(...);   // z fastest
+//   Solid bone = open(VoxelView{.data = scan.data(), .type = "int16", .size = {nx, ny, nz},
+//                               .stride = {2 * ny * nz, 2 * nz, 2}}, {.iso = 300});
+//
+// REQUIRES: all voxels are readable for as long as a function that takes the view has not returned.
+struct VoxelView {
+    const void* data = nullptr;          // voxel (0,0,0)
+    std::string type = {};               // int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64
+    bool bigEndian = false;              // of the bytes of a voxel
+    std::array<std::int64_t, 3> size{};  // voxels along x, y, z
+    std::array<std::int64_t, 3> stride{};  // bytes from a voxel to the next along x, y, z; below 0: backwards
+    AffineTransform indexToWorld = {};     // LPS, mm
+};
+
 // What a headerless file lacks.
 struct RawLayout {
     std::array<std::int64_t, 3> size{};  // voxels, x fastest

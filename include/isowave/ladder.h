@@ -122,6 +122,7 @@ struct HoldSummary {
     std::int64_t insidePlain = 0;    // how many of them the plain level has inside
     std::int64_t inside = 0;         // and this one
     std::int64_t thickened = 0;      // where the wall is thinner than the mesh's sampling can hold
+    std::int64_t gaps = 0;           // places in gaps narrower than the level's voxel that were filled
     std::int64_t controlPoints = 0;  // changed
     std::int64_t unmet = 0;          // conditions that could not be met
 };
@@ -142,6 +143,11 @@ struct LevelEdit {
     SolidFeature what = SolidFeature::handle;  // of which there is one less
     Point at{};                                // world
     double volume = 0;                         // world units^3 that the solid gained
+};
+
+// How far level 0 is from the mesh that was read, world units: rms and largest distance both ways, from samples.
+struct InputDistance {
+    double rmsTo = 0, maxTo = 0, rmsFrom = 0, maxFrom = 0;
 };
 
 struct LevelReport {
@@ -175,6 +181,9 @@ struct LevelReport {
     std::optional<SamplingReport> sampling;
     // World units; from samples on the level, and on some of level 0's triangles. 0 for level 0 itself.
     std::optional<double> rmsToLevel0, maxToLevel0, rmsFromLevel0, maxFromLevel0;
+    // Of the two rms, with 95 % confidence: they are measured on samples of large meshes.
+    std::optional<double> rmsToLevel0Error, rmsFromLevel0Error;
+    std::optional<InputDistance> toInput;  // at level 0, of a closed mesh that does not overlap itself
     std::optional<double> maxDeviation, rmsDeviation;  // of triangles from the zero set, world units
     double seconds = 0;
 };
@@ -189,6 +198,9 @@ struct BudgetReport {
     MeshTopology topology;
     std::int64_t selfIntersections = 0;  // pairs of triangles
     OneSidedDistance toLevel0, fromLevel0;
+    // No point of either surface is farther from the other, the mesh that was read; nothing where there is none, or it overlaps
+    // itself.
+    std::optional<double> maxToInput;
     double seconds = 0;
 };
 
@@ -229,7 +241,7 @@ struct LadderVisitor {
     std::function<void()> beforeMeasuring = {};
 };
 
-// Throws UsageError for options that exclude each other, InputError where the solid has no surface or does not reach
+// Throws UsageError for options that exclude each other or have no such value, InputError where the solid has no surface or does not reach
 // the first level asked for, Cancelled.
 ISOWAVE_EXPORT Ladder makeLadder(Solid solid, const LevelOptions& options = {},
                                  const LadderVisitor& visitor = {}, const Progress& progress = {});
@@ -253,7 +265,7 @@ ISOWAVE_EXPORT std::vector<LevelReport> describeLevels(const Pyramid& pyramid,
 // Whether a level can only be made beside level 0: a pyramid's file must be read as a whole then.
 ISOWAVE_EXPORT bool needsLevel0(const LevelOptions& options);
 
-// Throws UsageError for options that exclude each other, before anything is read.
+// Throws UsageError for options that exclude each other and ranges that end before they begin, before anything is read.
 ISOWAVE_EXPORT void checkRanges(const LevelOptions& options);
 
 }  // namespace isowave

@@ -89,6 +89,8 @@ struct OneSidedDistance {
     double maxBound = 0;
     double area = 0;           // of the surface that the samples lie on
     std::int64_t samples = 0;  // distances that were computed
+    // Where only some pieces of a surface were asked: with 95 % confidence rms is that of all of them to within this.
+    double rmsError = 0;
 };
 
 struct MeshComparison {

@@ -75,6 +75,10 @@ inline constexpr int kFewestSteps = 1024;
 ISOWAVE_EXPORT TriangleMesh readMesh(const std::filesystem::path& path, MeshFileInfo* info = nullptr,
                                      const Progress& progress = {});
 
+// Merges points with equal coordinates, as a reader of STL must. Points come in the order of their first appearance, with the
+// normal of the first; triangles keep their number and order.
+ISOWAVE_EXPORT TriangleMesh mergeEqualPoints(const TriangleMesh& mesh);
+
 // Whether a path has a mesh file's extension: .stl .obj .ply .off .glb, in any case.
 ISOWAVE_EXPORT bool isMeshPath(const std::filesystem::path& path);
 

@@ -45,7 +45,8 @@ class ISOWAVE_EXPORT Pyramid {
     // A packed solid (.iwz) is analysed again: the steps are those of the solid that was packed, to the bit.
     // finestStep: of a pyramid's file, what only finer steps need is not read; field() takes step >= finestStep then, and steps() is not to be
     // called. Throws InputError for a file that is no pyramid or damaged.
-    static Pyramid open(const std::filesystem::path& path, int finestStep = 0);
+    // Says, of a solid that was packed within a bound, that it was; Cancelled.
+    static Pyramid open(const std::filesystem::path& path, int finestStep = 0, const Progress& progress = {});
     // One .vdb; or, where the name ends in .iwz, level 0 alone, packed to the bit. Analysis of level 0 as synthesis gives
     // it back differs from this pyramid by rounding; pack the solid itself to keep its steps to the bit. Written under a temporary name, then renamed. Throws OperationError.
     void save(const std::filesystem::path& path) const;
@@ -71,6 +72,10 @@ class ISOWAVE_EXPORT Pyramid {
 
 // Throws UsageError for a solid that is a pyramid already; Cancelled.
 ISOWAVE_EXPORT Pyramid analyse(Solid solid, const Progress& progress = {});
+
+// The solid that was taken apart, as open() gives it of the pyramid's file: levels are read off the pyramid, nothing is
+// analysed again. It shares the pyramid's memory.
+ISOWAVE_EXPORT Solid solidOf(const Pyramid& pyramid);
 
 // ---- packed solids: level 0 in as few bytes as possible, from which all else is computed again
 //

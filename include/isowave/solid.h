@@ -165,5 +165,8 @@ ISOWAVE_EXPORT Solid open(const TriangleMesh& mesh, const SolidOptions& options 
                           const Progress& progress = {}, Space space = Space::unspecified);
 ISOWAVE_EXPORT Solid open(const Image& image, const SolidOptions& options = {},
                           const Progress& progress = {});
+// The same solid as of an image with these voxels, which are not copied. Of options.image only `nan` has a meaning.
+ISOWAVE_EXPORT Solid open(const VoxelView& voxels, const SolidOptions& options = {},
+                          const Progress& progress = {});
 
 }  // namespace isowave

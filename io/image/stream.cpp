@@ -7,7 +7,9 @@
 #include <mutex>
 
 #include "io/image/check.h"
+#include "io/image/fill_nan.h"
 #include "io/image/open_source.h"
+#include "io/image/view.h"
 
 namespace isowave {
 using namespace imageio;
@@ -16,6 +18,8 @@ namespace {
 
 // Fits into a core's cache, so that voxels are looked at while they are there.
 constexpr std::int64_t kSlabBytes = 1 << 20;
+// Of voxels whose z is fastest in memory: a line of the cache holds 16 float32 of them.
+constexpr std::int64_t kFewestGathered = 16;
 // A batch is long enough to keep many threads busy and short enough to be forgotten soon.
 constexpr std::int64_t kBatchSlabs = 32;
 
@@ -174,6 +178,22 @@ ImageStream::ImageStream(const Image& image, std::int64_t slabSlices) : state_(s
     s.chooseSlab(slabSlices);
 }
 
+ImageStream::ImageStream(const VoxelView& view, const ImageReadOptions& options, std::int64_t slabSlices)
+    : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.name = kViewName;
+    s.source = openView(view);
+    if (options.nan) s.source = fillNan(std::move(s.source), *options.nan);
+    s.header = imageOf(s.source->header);
+    s.type = heldType(*s.source);
+    const bool asRead = liesAsRead(view);
+    s.chooseSlab(slabSlices > 0 || asRead ? slabSlices
+                                          : std::max(kFewestGathered, kSlabBytes / s.sliceBytes()));
+    if (!asRead || s.type != s.source->header.type || !s.source->native) return;
+    s.source.reset();
+    s.all = view.data;
+}
+
 ImageStream::~ImageStream() = default;
 ImageStream::ImageStream(ImageStream&&) noexcept = default;
 ImageStream& ImageStream::operator=(ImageStream&&) noexcept = default;
@@ -186,6 +206,9 @@ void ImageStream::takeAsMask(std::vector<float> values) {
 const Image& ImageStream::header() const { return state_->header; }
 std::int64_t ImageStream::slabSlices() const { return state_->slabSlices; }
 bool ImageStream::isInFile() const { return !state_->all && !state_->keep; }
+std::int64_t ImageStream::bytesKept() const {
+    return state_->keep ? state_->sliceBytes() * state_->header.size[2] : 0;
+}
 
 void ImageStream::pass(std::string_view stage, const Progress& progress,
                        const std::function<void(const Slab&)>& each,

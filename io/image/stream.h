@@ -43,6 +43,10 @@ class ImageStream {
                          std::int64_t slabSlices = 0);
     // Over an image in memory, which must outlive the stream.
     explicit ImageStream(const Image& image, std::int64_t slabSlices = 0);
+    // Over voxels in memory of the caller's, which must outlive the stream; they are gathered a slab at a time unless they lie
+    // as they are handed out. Of the options only `nan` has a meaning.
+    explicit ImageStream(const VoxelView& view, const ImageReadOptions& options = {},
+                         std::int64_t slabSlices = 0);
     ~ImageStream();
     ImageStream(ImageStream&&) noexcept;
     ImageStream& operator=(ImageStream&&) noexcept;
@@ -57,6 +61,8 @@ class ImageStream {
     std::int64_t slabSlices() const;
     // False when all voxels are in memory.
     bool isInFile() const;
+    // Bytes of the voxels that the stream itself keeps in memory, once it has been passed over.
+    std::int64_t bytesKept() const;
 
     // One pass: each(slab) for every slab, by several threads at once, a batch of slabs at a time; after a
     // batch, done(z) on the calling thread, z the number of slices that are behind.

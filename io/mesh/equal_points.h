@@ -16,8 +16,4 @@ struct DistinctPoints {
 };
 DistinctPoints distinctPoints(std::span<const Point> points);
 
-// Merges points with equal coordinates, as a reader of STL must. Points come in the order of their first
-// appearance, with the normal of the first; triangles keep their number and order.
-TriangleMesh mergeEqualPoints(const TriangleMesh& mesh);
-
 }  // namespace isowave

@@ -29,7 +29,8 @@ void turnAll(std::vector<std::array<Real, 3>>& vectors, const Turn& turn) {
     }
 }
 
-// Points and normals as the file shall have them.
+}  // namespace
+
 void placeFor(MeshFormat format, const MeshWriteOptions& options, TriangleMesh& mesh) {
     const auto halfTurn = [](const auto& p) { return std::decay_t<decltype(p)>{-p[0], -p[1], p[2]}; };
     const auto yUp = [](const auto& p) { return std::decay_t<decltype(p)>{p[0], p[2], -p[1]}; };
@@ -43,8 +44,6 @@ void placeFor(MeshFormat format, const MeshWriteOptions& options, TriangleMesh& 
     for (Point& p : mesh.points)
         for (double& x : p) x *= options.metresPerUnit;
 }
-
-}  // namespace
 
 MeshFormat meshFormatFromName(const std::string& name) {
     for (const auto& [format, extension] : kExtensions)

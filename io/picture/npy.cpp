@@ -27,7 +27,7 @@ std::string headerValue(std::string_view header, const std::string& key, const s
         if (c == '(' || c == '[') ++depth;
         if (c == ')' || c == ']') --depth;
         if (depth == 0 && (c == ',' || c == '}')) break;
-        if (c != ' ') value += c;
+        if (static_cast<unsigned char>(c) > ' ') value += c;  // a message that quotes it is one line
     }
     return value;
 }

@@ -44,8 +44,12 @@ toff_t onSize(thandle_t handle) { return fileOf(handle).size; }
 
 int onError(TIFF*, void* file, const char*, const char* format, va_list arguments) {
     char* error = static_cast<TiffBytes*>(file)->error;
-    if (!*error) std::vsnprintf(error, sizeof TiffBytes::error, format, arguments);
-    return 1;  // nobody else need know
+    if (*error) return 1;  // nobody else need know
+    std::vsnprintf(error, sizeof TiffBytes::error, format, arguments);
+    for (char* c = error; *c; ++c) {  // some of libtiff's messages are two lines
+        if (*c == '\n') *c = ' ';
+    }
+    return 1;
 }
 int onWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cassert>
 #include <cctype>
 #include <cmath>
@@ -11,6 +12,8 @@
 
 namespace isowave {
 namespace {
+
+using Point2 = std::array<double, 2>;
 
 bool isBetween(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ','; }
 
@@ -96,6 +99,8 @@ std::vector<Polyline> parsePath(PathReader in) {
                                           "flatten curves first (Inkscape: Flatten Beziers)",
                                           command));
         }
+        if (!std::isfinite(x) || !std::isfinite(y))
+            throw InputError(in.where, "has relative pieces that add up to no finite number");
         if (command == 'M' || command == 'm') {
             flush(false);
             startX = x;
@@ -120,14 +125,25 @@ std::vector<Polyline> parsePoints(PathReader in, bool closed) {
     return {finished(std::move(line), closed)};
 }
 
+// The points as they are written. A closed line that ends where it begins gets a copy of its first point: readers take one away.
+std::vector<Point2> written(const Polyline& line) {
+    const auto at = [&](std::size_t i) {
+        return Point2{line.coordinates[2 * i], line.coordinates[2 * i + 1]};
+    };
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i < line.size(); ++i) points.push_back(at(i));
+    if (line.closed && points.size() > 1 && points.front() == points.back()) points.push_back(points.front());
+    return points;
+}
+
 std::string writePath(const std::vector<Polyline>& lines, std::size_t first, std::size_t last, bool isPath) {
     std::string text;
     for (std::size_t k = first; k < last; ++k) {
         const Polyline& line = lines[k];
-        for (std::size_t i = 0; i < line.size(); ++i) {
-            const double x = line.coordinates[2 * i], y = line.coordinates[2 * i + 1];
+        const std::vector<Point2> points = written(line);
+        for (std::size_t i = 0; i < points.size(); ++i) {
             const char* before = !isPath ? (i ? " " : "") : i == 0 ? "M" : i == 1 ? "L" : " ";
-            text += fmt::format("{}{},{}", before, x, y);
+            text += fmt::format("{}{},{}", before, points[i][0], points[i][1]);
         }
         if (isPath && line.closed) text += "Z";
     }
@@ -186,12 +202,12 @@ SvgLines::SvgLines(std::string text, const std::string& name) : text_(std::move(
         if (text_.compare(at, 4, "<!--") == 0)
             at = text_.find("-->", at);
         else
-            readTag(at, name);
+            at = readTag(at, name);
         if (at == std::string::npos) break;
     }
 }
 
-void SvgLines::readTag(std::size_t at, const std::string& name) {
+std::size_t SvgLines::readTag(std::size_t at, const std::string& name) {
     const auto is = [&](std::string_view tag) {
         const std::size_t behind = at + 1 + tag.size();
         return text_.compare(at + 1, tag.size(), tag) == 0 && behind < text_.size() &&
@@ -201,18 +217,19 @@ void SvgLines::readTag(std::size_t at, const std::string& name) {
                              : is("polyline") ? "polyline"
                              : is("polygon")  ? "polygon"
                                               : nullptr;
-    if (!kind) return;
+    if (!kind) return at;
     const std::size_t end = tagEnd(text_, at);
     if (end == std::string::npos) throw InputError(name, "ends inside a tag; it is truncated");
     ++tags_;
     const bool isPath = is("path");
     Value value{0, 0, lines_.size(), 0, isPath};
-    if (!findAttribute(text_, at, end, isPath ? "d" : "points", value.begin, value.end)) return;
+    if (!findAttribute(text_, at, end, isPath ? "d" : "points", value.begin, value.end)) return end;
     const PathReader in{text_, value.begin, value.end, fmt::format("{}: {} {}", name, kind, tags_)};
     const std::vector<Polyline> found = isPath ? parsePath(in) : parsePoints(in, is("polygon"));
     lines_.insert(lines_.end(), found.begin(), found.end());
     value.last = lines_.size();
     values_.push_back(value);
+    return end;
 }
 
 std::string SvgLines::with(const std::vector<Polyline>& lines) const {

@@ -25,7 +25,8 @@ class SvgLines {
         std::size_t begin, end, first, last;
         bool isPath;
     };
-    void readTag(std::size_t at, const std::string& name);
+    // The tag that begins at `at`. Returns from where to look for the next one: what is written in a tag is no other one.
+    std::size_t readTag(std::size_t at, const std::string& name);
 
     std::string text_;
     std::vector<Polyline> lines_;

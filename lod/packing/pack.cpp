@@ -167,6 +167,15 @@ double mostPackedPoints(const std::optional<double>& maxMemory) {
     return memoryLimit(maxMemory) / kBytesPerPoint;
 }
 
+compress::PackedField openPacked(const std::filesystem::path& path, const std::optional<double>& maxMemory,
+                                 const Progress& progress) {
+    compress::PackedField packed = compress::readPacked(path, mostPackedPoints(maxMemory), progress);
+    if (packed.bound)
+        progress.say(fmt::format("{}: level 0 is within {:g} voxels of what was packed, not to the bit",
+                                 path.string(), *packed.bound));
+    return packed;
+}
+
 void packExactly(const BSplineField& field, const std::map<std::string, std::string>& source,
                  const std::filesystem::path& path) {
     compress::writeFile(path, compress::pack(field, path.string(), {.source = source}).bytes);

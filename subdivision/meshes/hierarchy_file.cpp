@@ -203,6 +203,14 @@ PolygonMesh readBase(Reader& reader, const nlohmann::json& sections) {
 
 constexpr std::size_t kBaseSections = 5;
 
+void requireVariant(const Hierarchy& hierarchy, const std::string& name) {
+    try {
+        meshVariant(meshScheme(hierarchy.scheme), hierarchy.variant);
+    } catch (const InputError& e) {
+        throw InputError(name, e.what());
+    }
+}
+
 }  // namespace
 
 Hierarchy loadHierarchy(const std::filesystem::path& path, int steps) {
@@ -221,7 +229,7 @@ Hierarchy loadHierarchy(const std::filesystem::path& path, int steps) {
         Hierarchy result;
         result.scheme = header.at("scheme");
         result.variant = header.at("variant");
-        meshVariant(meshScheme(result.scheme), result.variant);
+        requireVariant(result, path.string());
         result.base = readBase(reader, sections);
         requireManifold(result.base, path.string());
         std::size_t points = result.base.vertexCount();

@@ -7,8 +7,8 @@
 
 A page marks a block by a comment on the line before it:
 
-    <!-- run -->                    ```sh       run by bash -eu, in a temporary folder with `tests` and `scripts` of the
-                                                sources and `isowave` in the PATH; all blocks of a page in one folder
+    <!-- run -->                    ```sh       run by bash -eu, in a temporary folder with `tests`, `scripts` and
+                                                `examples` of the sources and `isowave` in the PATH; all blocks of a page in one folder
     <!-- run: needs numpy PIL -->   ```sh       the same, left out (and said so) where python has not these modules
     <!-- output -->                 ```text     standard output of the block before, to the last line
     <!-- output: part -->           ```text     the lines shown come in this order; others may lie between
@@ -103,9 +103,15 @@ def rewritten(option, shown, printed):
 
 # ---- a page -------------------------------------------------------------------------------------------------------
 
-def missing_modules(option):
+def python_module(isowave):
+    """Where the build that `isowave` is of has the Python module."""
+    return pathlib.Path(isowave).resolve().parent.parent / "python"
+
+
+def missing_modules(option, isowave):
     names = option.split()[1:] if option.startswith("needs") else []
-    return [name for name in names if importlib.util.find_spec(name) is None]
+    built = any(python_module(isowave).glob("isowave/_native*.so"))
+    return [name for name in names if not (built if name == "isowave" else importlib.util.find_spec(name))]
 
 
 def run_block(script, folder, isowave):
@@ -113,9 +119,10 @@ def run_block(script, folder, isowave):
     link = folder / "bin/isowave"
     if not link.exists():
         link.symlink_to(isowave)
-        for shared in ("tests", "scripts"):
+        for shared in ("tests", "scripts", "examples"):
             (folder / shared).symlink_to(ROOT / shared)
-    environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}", LC_ALL="C.UTF-8")
+    environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}", LC_ALL="C.UTF-8",
+                       PYTHONPATH=str(python_module(isowave)))
     return subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
 
@@ -130,7 +137,7 @@ def check_page(name, text, isowave):
             option = option or ""
             place = f"{name}:{text.count(chr(10), 0, block.start()) + 1}"
             if kind == "run":
-                lacking = missing_modules(option)
+                lacking = missing_modules(option, isowave)
                 if lacking:
                     print(f"{place}: left out, python has no {' '.join(lacking)}")
                     printed = None

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -21,19 +22,35 @@ using openvdb::Vec3d;
 
 constexpr int kH = 4;  // the voxel of level 2
 
-// A plate, tilted, off the lattice, of thickness t and 40 wide.
-BSplineField plateOf(double t) {
+// Plates, tilted, off the lattice, 40 wide, from low to high.
+BSplineField platesOf(const std::vector<std::array<double, 2>>& plates) {
     const auto turn = openvdb::math::rotation<openvdb::math::Mat3d>(Vec3d(0.958, -0.287, 0).unit(), 0.3);
     TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i) {
-        const Vec3d p = turn * Vec3d(i & 1 ? 20 : -20, i & 2 ? 20 : -20, (i & 4 ? t : -t) / 2) +
-                        Vec3d(40.31, 39.83, 40.23);
-        mesh.points.push_back({p[0], p[1], p[2]});
+    for (const auto& [low, high] : plates) {
+        const auto first = static_cast<std::uint32_t>(mesh.points.size());
+        for (int i = 0; i < 8; ++i) {
+            const Vec3d p = turn * Vec3d(i & 1 ? 20 : -20, i & 2 ? 20 : -20, i & 4 ? high : low) +
+                            Vec3d(40.31, 39.83, 40.23);
+            mesh.points.push_back({p[0], p[1], p[2]});
+        }
+        for (const Triangle& t : std::vector<Triangle>{{0, 2, 3},
+                                                       {0, 3, 1},
+                                                       {4, 5, 7},
+                                                       {4, 7, 6},
+                                                       {0, 1, 5},
+                                                       {0, 5, 4},
+                                                       {2, 6, 7},
+                                                       {2, 7, 3},
+                                                       {0, 4, 6},
+                                                       {0, 6, 2},
+                                                       {1, 3, 7},
+                                                       {1, 7, 5}})
+            mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     return fitDistance(*distanceFromMesh(mesh, *openvdb::math::Transform::createLinearTransform(1.0), 4));
 }
+
+BSplineField plateOf(double t) { return platesOf({{-t / 2, t / 2}}); }
 
 BSplineField levelOf(BSplineField field, int level) {
     for (int step = 0; step < 3 * level; ++step) field = wavelets::analyseDirection(field, step % 3).coarse;
@@ -44,15 +61,16 @@ struct Levels {
     BSplineField finest, plain;
     std::unique_ptr<LevelHold> hold;
 
-    explicit Levels(double thickness, int level = 2)
-        : finest(plateOf(thickness)), plain(levelOf(finest, level)) {
+    explicit Levels(double thickness, int level = 2) : Levels(plateOf(thickness), level) {}
+    explicit Levels(BSplineField field, int level = 2)
+        : finest(std::move(field)), plain(levelOf(finest, level)) {
         const TriangleMesh mesh = polygonize(finest, {.refine = 2});
         hold = std::make_unique<LevelHold>(surfaceOf(mesh, finest.transform(), 2), finest);
     }
-    BSplineField held(int refine, HoldReport* report = nullptr) const {
+    BSplineField held(int refine, HoldReport* report = nullptr, const HoldOptions& options = {}) const {
         BSplineField field = plain;
         field.controlPoints = plain.controlPoints->deepCopy();
-        const HoldReport made = hold->apply(field, refine);
+        const HoldReport made = hold->apply(field, refine, options);
         if (report) *report = made;
         return field;
     }
@@ -115,6 +133,24 @@ TEST(LevelHold, TheCorrectionVanishesAsWallsGetThicker) {
         }
         EXPECT_EQ(report.changed > 0, share < 2) << share;
     }
+}
+
+TEST(LevelHold, AGapThatIsToCloseClosesEverywhere) {
+    const Levels levels(platesOf({{-9, -0.7}, {0.7, 9}}));  // a gap of 0.35 H
+    const MeshTopology open = topologyOf(polygonize(levels.plain));
+    EXPECT_GT(open.components + open.genus, 1);  // without the rule it closes here and there
+    HoldOptions options;
+    options.closedGaps = 0.5;
+    HoldReport report;
+    const MeshTopology closed = topologyOf(polygonize(levels.held(1, &report, options)));
+    EXPECT_GT(report.gaps, 1000);
+    EXPECT_EQ(report.unmet, 0);
+    EXPECT_EQ(closed.components, 1);
+    EXPECT_EQ(closed.genus, 0);
+    EXPECT_NEAR(closed.volume, 40 * 40 * 18, 0.03 * 40 * 40 * 18);
+    options.closedGaps = 0.2;  // wider gaps stay as they are
+    EXPECT_EQ(valuesOf(levels.held(1, &report, options)), valuesOf(levels.plain));
+    EXPECT_EQ(report.gaps, 0);
 }
 
 TEST(LevelHold, WhatIsThickKeepsItsBits) {

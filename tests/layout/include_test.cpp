@@ -75,10 +75,13 @@ std::map<std::string, std::set<std::string>> makeArrows() {
         add(kind, {"subdivision/filters", "io/mesh", "io/picture", "io/vector"});
         subdivision.insert(kind);
     }
-    add("subdivision", subdivision);  // the files at the top: the schemes of all four, by name
+    add("subdivision", subdivision);      // the files at the top: the schemes of all four, by name
+    add("view", {"volume", "curves2d"});  // exact distances to a surface and to curves
     std::set<std::string> all;
     for (const auto& [part, to] : arrows) all.insert(part);
     arrows["tools"] = all;
+    all.insert("tools");
+    arrows["python"] = all;
     return arrows;
 }
 const std::map<std::string, std::set<std::string>> kArrows = makeArrows();
@@ -195,6 +198,7 @@ constexpr const char* kSimplifier =
     "one of two that define lod/simplifier.h: with CGAL's GPL packages, and without";
 constexpr Registry kRegistries[] = {
     {"tools/main.cpp", "the program: nobody calls it"},
+    {"python/native/module.cpp", "the module: Python calls it"},
     {"tools/help_command.cpp", kSubcommand},
     {"tools/curves/curves.cpp", kSubcommand},
     {"tools/solids/analyse.cpp", kSubcommand},
@@ -211,6 +215,7 @@ constexpr Registry kRegistries[] = {
     {"tools/subdivision/relief.cpp", kSubcommand},
     {"tools/subdivision/reverse.cpp", kSubcommand},
     {"tools/subdivision/subdivide.cpp", kSubcommand},
+    {"tools/view/view.cpp", kSubcommand},
     {"simplify/simplifier.cpp", kSimplifier},
     {"lod/without_simplify/simplifier.cpp", kSimplifier},
 };
@@ -335,6 +340,7 @@ TEST(Layout, TheArrowCheckerCanFail) {
     wrong("hold/solid_limits.cpp", "lod/steps.h", "from hold to lod");
     wrong("lod/ladder.cpp", "simplify/collapse.h", "from lod to simplify");
     wrong("lod/ladder.h", "tools/commands.h", "from lod to tools");
+    wrong("tools/command.h", "python/native/watch.h", "from tools to python");
     wrong("lod/ladder.h", "curves2d/rows.h", "from lod to curves2d");
     wrong("curves2d/rows.h", "wavelets/pyramid.h", "from curves2d to wavelets");
     wrong("curves2d/rows.h", "io/image/source.h", "from curves2d to io/image");
@@ -342,6 +348,8 @@ TEST(Layout, TheArrowCheckerCanFail) {
     wrong("subdivision/filters/mask.h", "subdivision/curves/curve.h", "to subdivision/curves");
     wrong("subdivision/curves/curve.h", "subdivision/meshes/mesh.h", "to subdivision/meshes");
     wrong("subdivision/meshes/mesh.h", "subdivision/catalogue.h", "from subdivision/meshes to subdivision");
+    wrong("view/page.h", "lod/ladder.h", "from view to lod");
+    wrong("lod/ladder.h", "view/page.h", "from lod to view");
     wrong("volume/fit.cpp", "fit.h", "folder/file.h");
     EXPECT_THAT(arrowComplaint("wavelets/interval/interval.h", {"openvdb/openvdb.h", false}),
                 HasSubstr("no grid"));
@@ -364,6 +372,7 @@ TEST(Layout, TheArrowCheckerAllowsWhatTheDesignHas) {
     right("hold/solid_limits.cpp", "polygonize/specks.h");
     right("simplify/simplifier.cpp", "lod/simplifier.h");
     right("tools/solids/lod.cpp", "simplify/distance.h");
+    right("python/native/options.cpp", "tools/command.h");
     EXPECT_EQ(arrowComplaint(kPublicGrids, {"openvdb/openvdb.h", false}), "");
 }
 

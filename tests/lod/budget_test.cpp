@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/lod/solids.h"
+#include "tests/temp_folder.h"
 
 namespace isowave::lod_test {
 namespace {
@@ -41,12 +42,16 @@ TEST(RingBudget, HasOneMeshABudgetAndSaysWhereItCameFromAndWhy) {
 }
 
 TEST(RingBudget, StaysWithinAToleranceAndMakesLevelsTooWhenAsked) {
-    const Ladder ladder = makeBudget(ring(), {.tolerances = {0.3}}, {.levels = StepRange{0, 1}});
+    const Ladder ladder = makeBudget(ring(), {.tolerances = {0.6}}, {.levels = StepRange{0, 1}});
     ASSERT_EQ(ladder.levels.size(), 2u);
     EXPECT_EQ(topologyOf(ladder.levels[1].mesh).triangles, ladder.levels[1].report.topology.triangles);
     const BudgetReport& b = ladder.budgets[0].report;
-    EXPECT_LE(b.toLevel0.maxBound, 0.3);
-    EXPECT_LE(b.fromLevel0.maxBound, 0.3);
+    ASSERT_TRUE(b.maxToInput);
+    EXPECT_LE(*b.maxToInput, 0.6);
+    const MeshComparison toInput = compareMeshes(ladder.budgets[0].mesh, ringMesh());
+    EXPECT_LE(toInput.max, *b.maxToInput);
+    const InputDistance& level0 = *ladder.levels[0].report.toInput;
+    EXPECT_LE(toInput.max, level0.maxTo + std::max(b.toLevel0.maxBound, b.fromLevel0.maxBound) + 0.01);
     EXPECT_LT(2 * b.topology.triangles, ladder.levels[0].report.topology.triangles);
     expectItsReport(ladder.budgets[0]);
 }
@@ -68,6 +73,13 @@ TriangleMesh column(const std::vector<std::array<double, 2>>& outline, double he
     return mesh;
 }
 
+// A pyramid does not have the mesh that it was made of: tolerances are those to level 0.
+Solid withoutInput(const TriangleMesh& mesh, std::int64_t voxels) {
+    const test::TempFolder folder;
+    analyse(open(mesh, {.voxels = voxels})).save(folder / "part.pyramid.vdb");
+    return open(folder / "part.pyramid.vdb");
+}
+
 // Tolerances of 0.01 to 3 voxels: flat, flat with an inner corner, and bent everywhere.
 TEST(ToleranceBudget, ALargerToleranceNeverGetsMoreTriangles) {
     const TriangleMesh cube = column({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 1);
@@ -75,11 +87,12 @@ TEST(ToleranceBudget, ALargerToleranceNeverGetsMoreTriangles) {
     for (const TriangleMesh& mesh : {cube, bracket, ringMesh(0.35, 0.15)}) {
         BudgetOptions budgets;
         for (double voxels = 0.01; voxels < 4; voxels *= 1.5) budgets.tolerances.push_back(voxels / 32);
-        const std::vector<BudgetLevel> made = makeBudget(open(mesh, {.voxels = 32}), budgets).budgets;
+        const std::vector<BudgetLevel> made = makeBudget(withoutInput(mesh, 32), budgets).budgets;
         for (std::size_t i = 0; i < made.size(); ++i) {
             const BudgetReport& b = made[i].report;
             expectSound(b.topology);
             EXPECT_LE(std::max(b.toLevel0.maxBound, b.fromLevel0.maxBound), *b.toleranceAsked);
+            EXPECT_FALSE(b.maxToInput);
             if (i == 0) continue;
             EXPECT_LE(b.topology.triangles, made[i - 1].report.topology.triangles) << *b.toleranceAsked;
         }
@@ -89,9 +102,20 @@ TEST(ToleranceBudget, ALargerToleranceNeverGetsMoreTriangles) {
 // A cube has 12 triangles; level 0 rounds its edges by a fraction of a voxel.
 TEST(ToleranceBudget, TakesFewTrianglesForAFlatPart) {
     const TriangleMesh cube = column({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 1);
-    const auto made = makeBudget(open(cube, {.voxels = 64}), {.tolerances = {0.25 / 64, 1.0 / 64}}).budgets;
+    const auto made = makeBudget(withoutInput(cube, 64), {.tolerances = {0.25 / 64, 1.0 / 64}}).budgets;
     EXPECT_LE(made[0].report.topology.triangles, 60);
     EXPECT_EQ(made[1].report.topology.triangles, 12);
+}
+
+TEST(ToleranceBudget, RefersToTheMeshThatWasRead) {
+    const TriangleMesh cube = column({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 1);
+    const double tolerance = 1.0 / 64;
+    const BudgetLevel made = makeBudget(open(cube, {.voxels = 64}), {.tolerances = {tolerance}}).budgets[0];
+    EXPECT_LE(made.report.topology.triangles, 60);
+    EXPECT_LE(*made.report.maxToInput, tolerance);
+    EXPECT_LE(compareMeshes(made.mesh, cube, 0.01).maxBound, 1.02 * *made.report.maxToInput);
+    // Level 0 rounds the edges off by more than that.
+    EXPECT_THROW(makeBudget(open(cube, {.voxels = 64}), {.tolerances = {0.05 / 64}}), InputError);
 }
 
 TEST(RingBudget, ChoosesTheFinestStepThatTheLimitsAllow) {
@@ -125,7 +149,7 @@ TEST(RingBudget, MeasuresTheDeviationFromTheZeroSetWhenAsked) {
 }
 
 TEST(RingBudget, CompactMeshesHaveTheTrianglesOfPlainOnesAndMoreOfTheVolume) {
-    const auto plain = levelsOf(ring(), {.levels = StepRange{0, 2}});
+    const auto plain = levelsOf(ring(), {.levels = StepRange{0, 2}, .refine = 1});
     const auto compact = levelsOf(ring(), {.levels = StepRange{0, 2}, .refine = 2, .compact = true});
     ASSERT_EQ(compact.size(), plain.size());
     // 48 slices of a polygon of 24 sides, about the axis.

@@ -115,6 +115,9 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                                         "max_to_level0",
                                                         "rms_from_level0",
                                                         "max_from_level0",
+                                                        "rms_to_level0_error",
+                                                        "rms_from_level0_error",
+                                                        "to_input",
                                                         "max_deviation",
                                                         "rms_deviation",
                                                         "seconds"}));

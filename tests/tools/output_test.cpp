@@ -1,6 +1,7 @@
 // OutputFolder: all files change, or none.
 #include "tools/output.h"
 #include "isowave/error.h"
+#include "tests/tools/inputs.h"
 #include "tests/tools/run_isowave.h"
 
 namespace isowave::tools_test {
@@ -53,6 +54,25 @@ TEST_F(EarlierResult, ComesBackWhenARenamingHalfWayFails) {
         EXPECT_THROW(out.commit(), OperationError);
     }
     EXPECT_EQ(folder.snapshot(), before);
+}
+
+// Coarser levels than before, or fewer: the others are still there, and are named once.
+TEST(LadderFolder, NamesMeshesOfAnEarlierRun) {
+    const Folder folder;
+    writeNrrd(folder / "a.nrrd", {32, 32, 32}, greyBall({32, 32, 32}, 10));
+    const auto lod = [&](const std::string& levels) {
+        return isowave({"lod", (folder / "a.nrrd").string(), "--iso", "0", "--levels", levels, "-o",
+                        (folder / "out").string()});
+    };
+    EXPECT_EQ(lod("0..2").err.find("earlier run"), std::string::npos);
+    const Result fewer = lod("1");
+    EXPECT_EQ(fewer.exitCode, 0);
+    EXPECT_NE(fewer.err.find("out: out_L0.ply, out_L2.ply of an earlier run stay there"), std::string::npos)
+        << fewer.err;
+    EXPECT_TRUE(fs::exists(folder / "out/out_L2.ply"));
+    EXPECT_EQ(lod("1").err.find("earlier run"), std::string::npos) << "the report names what is there";
+    write(folder / "out/report.json", "no report");
+    EXPECT_EQ(lod("1").exitCode, 0);
 }
 
 }  // namespace

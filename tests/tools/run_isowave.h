@@ -79,6 +79,8 @@ struct RunOptions {
     std::string standardOutput = {};  // goes there; empty: is caught
     std::function<bool(pid_t)> interruptWhen = {};  // of the program; SIGINT as soon as this is true
     rlim_t mostSeconds = 240;  // of CPU, which a busy machine does not use up; then killed
+    std::optional<std::pair<int, double>> signalAfter = {};  // this signal, so many seconds after the start
+    bool asNobody = false;  // without the rights of root, where the test has them
 };
 
 inline Result isowave(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
@@ -104,11 +106,16 @@ inline Result isowave(const std::vector<std::string>& arguments, const RunOption
         if (options.largestFile) restrict(RLIMIT_FSIZE, *options.largestFile);
         if (options.mostMemory) restrict(RLIMIT_AS, *options.mostMemory);
         restrict(RLIMIT_CPU, options.mostSeconds);
+        if (options.asNobody && ::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(127);
         ::execv(argv[0], argv.data());
         ::_exit(127);
     }
     int status = 0;
     bool interrupted = false;
+    if (options.signalAfter) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(options.signalAfter->second));
+        ::kill(child, options.signalAfter->first);  // which the child is until somebody has waited for it
+    }
     while (::waitpid(child, &status, WNOHANG) == 0) {
         if (!interrupted && options.interruptWhen && options.interruptWhen(child)) {
             ::kill(child, SIGINT);

@@ -248,16 +248,15 @@ TEST(DistanceFromImage, FindsASubVoxelSurface) {
     const auto truth = [](const Vec3d& p) { return (p - Vec3d(15.3, 15.8, 16.1)).length() - 9.6; };
     const Image image = greyImage(truth, 32, 300, 57);
     const auto distance = distanceFromImage(image, {.iso = 300}, 4);
-    // A lattice point that sees the surface along one axis only reads up to sqrt(3) times too far.
     double worst = 0, sum = 0;
     for (auto v = distance->cbeginValueOn(); v; ++v) {
         const double error = std::abs(*v - truth(v.getCoord().asVec3d()));
         worst = std::max(worst, error);
         sum += error * error;
     }
-    EXPECT_LT(worst, 0.5);                                                                // seen 0.43
-    EXPECT_LT(std::sqrt(sum / static_cast<double>(distance->activeVoxelCount())), 0.15);  // seen 0.12
-    EXPECT_LT(rmsOfZeroSet(fitDistance(*distance), truth), 0.03);                         // seen 0.017
+    EXPECT_LT(worst, 0.05);                                                               // seen 0.034
+    EXPECT_LT(std::sqrt(sum / static_cast<double>(distance->activeVoxelCount())), 0.01);  // seen 0.0079
+    EXPECT_LT(rmsOfZeroSet(fitDistance(*distance), truth), 0.002);                        // seen 0.0014
 }
 
 TEST(DistanceFromImage, SeesNoSurfaceDeepInside) {
@@ -266,7 +265,7 @@ TEST(DistanceFromImage, SeesNoSurfaceDeepInside) {
     const auto distance = distanceFromImage(greyImage(truth, 72, 300, 57), {.iso = 300}, 4);
     EXPECT_EQ(distance->tree().getValue(Coord(36, 36, 36)), -4.0f);
     for (auto v = distance->cbeginValueOn(); v; ++v)
-        ASSERT_LT(std::abs(*v - truth(v.getCoord().asVec3d())), 0.5) << v.getCoord();  // seen 0.37
+        ASSERT_LT(std::abs(*v - truth(v.getCoord().asVec3d())), 0.1) << v.getCoord();
 }
 
 TEST(DistanceFromImage, InvertTurnsTheSolidInsideOut) {
@@ -310,7 +309,7 @@ TEST(DistanceFromLevelSet, RescalesAnyHalfWidthToVoxels) {
     double worst = 0;
     for (auto v = distance->cbeginValueOn(); v; ++v)
         worst = std::max(worst, std::abs(*v - truth(v.getCoord().asVec3d())));
-    EXPECT_LT(worst, 0.5);  // seen 0.43
+    EXPECT_LT(worst, 0.05);  // seen 0.034
     EXPECT_EQ(distance->tree().getValue(Coord(0)), -4.0f);
     EXPECT_EQ(distance->transform(), source->transform());
 }

@@ -13,14 +13,13 @@
 #include "isowave/error.h"
 #include "tools/commands.h"
 #include "tools/console.h"
+#include "tools/curves/curve_options.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/curves.h"
 
 namespace isowave::tools {
 namespace {
-
-constexpr int kStepsPerPlaneLevel = 2;
 
 enum class CurveFormat { svg, geojson, png, txt };
 
@@ -38,11 +37,10 @@ std::string extensionOf(CurveFormat format) {
     return "";
 }
 
-// How the curves are drawn.
+// How the curves are written.
 struct DrawOptions {
     CurveFormat format = CurveFormat::svg;
-    bool smooth = false;
-    std::optional<double> flatness;  // pixels of level 0
+    curves2d::DrawOptions curves;
     std::optional<std::filesystem::path> sheet;
 };
 
@@ -67,7 +65,7 @@ class LevelWriter {
     void report(double pixel, CurvesReport& report) const {
         report.steps = steps_;
         report.files = files_;
-        report.smooth = draw_.smooth;
+        report.smooth = draw_.curves.smooth;
         report.deviation = deviation_ / pixel;
         report.straightPieces = straightPieces_;
     }
@@ -76,7 +74,7 @@ class LevelWriter {
     void write(const std::string& name, const curves2d::LadderStep& step) {
         const std::filesystem::path place = out_.place(name);
         ++files_;
-        const auto [curves, smooth] = step.drawn({draw_.flatness, draw_.smooth});
+        const auto [curves, smooth] = step.drawn(draw_.curves);
         if (smooth) {
             deviation_ = std::max(deviation_, smooth->deviation);
             straightPieces_ += smooth->straightPieces;
@@ -113,23 +111,13 @@ class CurvesCommand : public Command {
 
   private:
     void declareDrawing();
-    void declareInput();
-    void declareFit();
     void refuseContradictions() const;
-    void refuseForeignOptions() const;
-    curves2d::LadderOptions ladderOptions() const;
     CurvesReport climb(OutputFolder& out, Console& console, std::string& sheet) const;
     void tellAll(const CurvesReport& report, const OutputFolder& out, Console& console) const;
 
-    std::optional<StepRange> levels_;
+    CurveOptions curves_;
     DrawOptions draw_;
     bool table_ = false;
-    std::optional<double> iso_;
-    std::optional<std::int32_t> pixels_;
-    bool invert_ = false;
-    std::optional<curves2d::Fit> fit_;
-    std::optional<double> halfWidth_, band_;
-    curves2d::Hold hold_ = curves2d::Hold::local;
 };
 
 CurvesCommand::CurvesCommand()
@@ -142,19 +130,11 @@ CurvesCommand::CurvesCommand()
                "have "
                "positive area, holes negative, in the input's own coordinates."}) {
     declareOutput("the folder that gets one file a level");
-    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
-                   [this](const std::string& v) { levels_ = range(v); });
-    options_.value("--hold", "local|none", "local",
-                   "local: what is thinner than a level's pixel stays whole, and no level has more parts or "
-                   "holes than the one before; none: the wavelet levels as they are",
-                   [this](const std::string& v) {
-                       hold_ = choice<curves2d::Hold>(
-                           v, {{"local", curves2d::Hold::local}, {"none", curves2d::Hold::none}});
-                   });
+    curves_.declareLevels(options_);
     declareDrawing();
     declareJson();
-    declareInput();
-    declareFit();
+    curves_.declareInput(options_);
+    curves_.declareFit(options_);
     declareThreads();
     declareQuiet();
 }
@@ -167,100 +147,38 @@ void CurvesCommand::declareDrawing() {
                                                               {"png", CurveFormat::png},
                                                               {"txt", CurveFormat::txt}});
                    });
-    options_.flag("--smooth", "SVG: cubic Beziers along the zero set instead of straight pieces",
-                  draw_.smooth);
-    options_.value("--flatness", "T", "smooth: 0.1; otherwise no added points",
-                   "the drawn curve stays within T pixels of level 0 of the zero set, by added points",
-                   [this](const std::string& v) { draw_.flatness = positive(v); });
+    curves_.declareDrawing(options_);
     options_.flag("--table", "print a table of the steps: domain, control points, nodes, rings, area",
                   table_);
     options_.result("--sheet", "FILE", "one SVG with all levels side by side", draw_.sheet);
 }
 
-void CurvesCommand::declareInput() {
-    options_.value(
-        "--iso", "V", "the middle of the range of values",
-        "images: the curve is where the value is V; inside is where it is larger, on light ground where it "
-        "is not",
-        [this](const std::string& v) { iso_ = number(v); });
-    options_.value("--pixels", "N", "1024", "polygons: sample with N pixels along the longer side",
-                   [this](const std::string& v) {
-                       pixels_ = static_cast<std::int32_t>(integer(v, 1, std::int64_t{1} << 22));
-                   });
-    options_.flag("--invert", "images: the ground is inside, and not what is taken for the drawing", invert_);
-}
-
-void CurvesCommand::declareFit() {
-    options_.value("--fit", "binary|distance", "binary for masks and labels, otherwise distance",
-                   "from signs alone (filtered weights), or from signed distances",
-                   [this](const std::string& v) {
-                       fit_ = choice<curves2d::Fit>(
-                           v, {{"binary", curves2d::Fit::binary}, {"distance", curves2d::Fit::distance}});
-                   });
-    options_.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
-                   [this](const std::string& v) { halfWidth_ = positive(v); });
-    options_.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
-                   [this](const std::string& v) { band_ = positive(v); });
-}
-
 void CurvesCommand::refuseContradictions() const {
-    if (draw_.smooth && draw_.format != CurveFormat::svg)
+    if (curves_.draw.smooth && draw_.format != CurveFormat::svg)
         throw UsageError("--smooth writes Bezier curves, which only --format svg has");
-    if (band_.value_or(2) > halfWidth_.value_or(4))
-        throw UsageError("--band is larger than --half-width; distances are known up to the half-width only");
-}
-
-// What the input has no use for is refused, as lod does.
-void CurvesCommand::refuseForeignOptions() const {
-    const bool polygons = curves2d::looksLikePolygons(arguments[0]);
-    const struct {
-        const char* name;
-        bool given, ofPolygons;
-    } table[] = {{"--pixels", pixels_.has_value(), true},
-                 {"--iso", iso_.has_value(), false},
-                 {"--invert", invert_, false}};
-    for (const auto& option : table)
-        if (option.given && option.ofPolygons != polygons)
-            throw UsageError(fmt::format("{} has no meaning for {}, which {}; leave it out", option.name,
-                                         arguments[0].string(), polygons ? "holds polygons" : "is an image"));
-}
-
-curves2d::LadderOptions CurvesCommand::ladderOptions() const {
-    curves2d::LadderOptions options;
-    options.fit = fit_;
-    if (halfWidth_) options.halfWidth = *halfWidth_;
-    options.band = band_;
-    options.hold = hold_;
-    if (!levels_) return options;
-    options.firstStep = levels_->first * kStepsPerPlaneLevel;
-    if (levels_->last) options.lastStep = *levels_->last * kStepsPerPlaneLevel;
-    return options;
+    curves_.ladder();
+    curves_.refuseForeign(arguments[0].string(), curves2d::looksLikePolygons(arguments[0]));
 }
 
 // Climbs the ladder, writes the levels into `out`, and says what came of it.
 CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::string& sheet) const {
-    curves2d::InputOptions inputOptions;
-    inputOptions.iso = iso_;
-    inputOptions.invert = invert_;
-    if (pixels_) inputOptions.pixels = *pixels_;
-    curves2d::Input input = curves2d::readInput(arguments[0], inputOptions, console.progress());
+    curves2d::Input input = curves2d::readInput(arguments[0], curves_.input(), console.progress());
     for (const std::string& remark : input.remarks) console.say(remark);
     CurvesReport report;
     report.path = arguments[0].string();
     report.kind = input.kind;
     report.pixel = input.pixel;
-    report.hold = hold_;
-    LevelWriter writer(draw_, curves2d::viewOf(input), out);
+    report.hold = curves_.hold;
+    DrawOptions draw = draw_;
+    draw.curves = curves_.draw;
+    LevelWriter writer(draw, curves2d::viewOf(input), out);
     report.ladder = curves2d::makeLadder(
-        std::move(input), ladderOptions(), [&](const curves2d::LadderStep& step) { writer.visit(step); },
+        std::move(input), curves_.ladder(), [&](const curves2d::LadderStep& step) { writer.visit(step); },
         console.progress());
     for (const std::string& remark : fitRemarks(report.ladder.fitReport)) console.say(remark);
+    requireFirstLevel(curves_, report.ladder, report.path);
     const int last = report.ladder.steps.back().step;
     const bool isEmpty = report.ladder.steps.back().points == 0;
-    const std::string end = isEmpty ? "nothing is left" : "one node is left";
-    if (levels_ && last < levels_->first * kStepsPerPlaneLevel)
-        throw InputError(report.path, fmt::format("ends at level {}, where {}; --levels begins at {}",
-                                                  last / kStepsPerPlaneLevel, end, levels_->first));
     if (isEmpty)
         console.say(fmt::format("{}: nothing is left; the ladder ends here", curves2d::stepName(last)));
     writer.report(report.pixel, report);
@@ -270,7 +188,7 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::stri
 }
 
 void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out, Console& console) const {
-    if (draw_.smooth) console.say(smoothRemark(report));
+    if (curves_.draw.smooth) console.say(smoothRemark(report));
     if (jsonToStandardOutput()) return console.print(jsonOf(report));
     if (table_) console.print(table(report));
     console.print(summary(report, out.folder().string()));
@@ -278,7 +196,6 @@ void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out,
 
 int CurvesCommand::run(Console& console) {
     refuseContradictions();
-    refuseForeignOptions();
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     if (draw_.sheet) out.keepFree(*draw_.sheet);

@@ -77,8 +77,15 @@ Json wallsJson(const std::vector<WallThickness>& walls) {
 
 Json holdJson(const std::optional<HoldSummary>& h) {
     if (!h) return nullptr;
-    return {{"samples", h->samples},     {"inside_plain", h->insidePlain},     {"inside", h->inside},
-            {"thickened", h->thickened}, {"control_points", h->controlPoints}, {"unmet", h->unmet}};
+    return {{"samples", h->samples},  {"inside_plain", h->insidePlain},
+            {"inside", h->inside},    {"thickened", h->thickened},
+            {"gaps_filled", h->gaps}, {"control_points", h->controlPoints},
+            {"unmet", h->unmet}};
+}
+
+Json inputJson(const std::optional<InputDistance>& d) {
+    if (!d) return nullptr;
+    return {{"rms_to", d->rmsTo}, {"max_to", d->maxTo}, {"rms_from", d->rmsFrom}, {"max_from", d->maxFrom}};
 }
 
 // What is known of the mesh itself.
@@ -122,6 +129,9 @@ Json levelJson(const LevelReport& level, const std::string& file) {
     json["max_to_level0"] = orNull(level.maxToLevel0);
     json["rms_from_level0"] = orNull(level.rmsFromLevel0);
     json["max_from_level0"] = orNull(level.maxFromLevel0);
+    json["rms_to_level0_error"] = orNull(level.rmsToLevel0Error);
+    json["rms_from_level0_error"] = orNull(level.rmsFromLevel0Error);
+    json["to_input"] = inputJson(level.toInput);
     json["max_deviation"] = orNull(level.maxDeviation);
     json["rms_deviation"] = orNull(level.rmsDeviation);
     json["seconds"] = level.seconds;
@@ -146,6 +156,7 @@ Json budgetJson(const BudgetReport& budget, const std::string& file) {
     json["rms_from_level0"] = finite(budget.fromLevel0.rms);
     json["max_from_level0"] = finite(budget.fromLevel0.max);
     json["max_bound_from_level0"] = finite(budget.fromLevel0.maxBound);
+    json["max_to_input"] = orNull(budget.maxToInput);
     json["seconds"] = budget.seconds;
     return json;
 }
@@ -228,6 +239,8 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
     report["budgets"] = Json::array();
     for (std::size_t i = 0; i < ladder.budgets.size(); ++i)
         report["budgets"].push_back(budgetJson(ladder.budgets[i].report, nameAt(files.budgets, i)));
+    if (!files.lods.empty()) report["glb_lods"] = files.lods;
+    if (!files.view.empty()) report["view"] = files.view;
     report["steps"] = ladder.steps;
     report["coefficients_stored"] = ladder.coefficientsStored;
     report["control_points"] = ladder.controlPoints;

@@ -1,9 +1,17 @@
 // isowave lod INPUT -o FOLDER: each mesh is written as the ladder makes it; then report.json, then everything is put into
 // the folder at once.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
+#include "io/mesh/glb_lods.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
 #include "isowave/ladder.h"
@@ -12,9 +20,12 @@
 #include "tools/console.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
+#include "tools/view/level_facts.h"
+#include "tools/view/pages.h"
 
 namespace isowave::tools {
 namespace {
@@ -27,21 +38,52 @@ struct MeshWriter {
     MeshFormat format;
     MeshWriteOptions options;
     OutputFolder& out;
+    std::unique_ptr<view::Page> page;  // of --view
+    std::optional<GlbLods> lods;       // of --glb-lods
+    Progress progress;
     LadderFiles files;
+    double firstVoxel = 0;
+    bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
-    void write(const std::string& name, const TriangleMesh& mesh) {
+    template <class Report>
+    void write(const std::string& name, const Report& report, const TriangleMesh& mesh) {
         writeMesh(out.place(name), mesh, format, options);
+        if (!page) return;
+        view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
+        facts.file = name;
+        page->add(std::move(facts), mesh, progress);
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofStep(report.step));
-            write(files.levels.back(), mesh);
+            fromLevel0 = fromLevel0 || report.step == 0;
+            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
+            write(files.levels.back(), report, mesh);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), mesh);
+            write(files.budgets.back(), report, mesh);
         };
         return {level, budget, releaseFreedMemory};
+    }
+    // A level is fine enough while its voxel is at most so many voxels of the first one as the picture is smaller; the first one
+    // suits half a picture.
+    double coverageOf(const LevelReport& report) {
+        const double voxel = std::cbrt(report.spacing[0] * report.spacing[1] * report.spacing[2]);
+        if (firstVoxel == 0) firstVoxel = voxel;
+        return 0.5 * firstVoxel / voxel;
+    }
+    void writeLods() {
+        if (!lods) return;
+        files.lods = names.ofLods();
+        lods->write(out.place(files.lods));
+    }
+    void writePage() {
+        if (!page) return;
+        files.view = names.ofPage();
+        AtomicFile file(out.place(files.view));
+        writeWhole(file, page->html());
+        file.commit();
     }
 };
 
@@ -53,6 +95,36 @@ std::string unitShown(const Solid& solid) {
     return solid.space() == Space::unspecified ? "" : " [mm]";
 }
 
+// Meshes that the folder's own report.json names, and this run does not make: they would pass for its levels.
+std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFiles& files) {
+    std::ifstream in(out.folder() / kReport);
+    const Json before = Json::parse(in, nullptr, /*allow_exceptions*/ false);
+    std::vector<std::string> left;
+    for (const char* key : {"levels", "budgets"}) {
+        if (!before.is_object() || !before.contains(key)) continue;
+        for (const Json& entry : before[key]) {
+            if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) continue;
+            const auto name = entry["file"].get<std::string>();
+            const auto isOf = [&](const std::vector<std::string>& made) {
+                return std::find(made.begin(), made.end(), name) != made.end();
+            };
+            std::error_code ignored;
+            if (!isOf(files.levels) && !isOf(files.budgets) &&
+                std::filesystem::is_regular_file(out.folder() / name, ignored))
+                left.push_back(name);
+        }
+    }
+    return left;
+}
+
+void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, Console& console) {
+    const std::vector<std::string> left = leftFromBefore(out, files);
+    if (left.empty()) return;
+    console.say(fmt::format("{}: {} of an earlier run {} there; this run has no such mesh",
+                            out.folder().string(), fmt::join(left, ", "),
+                            left.size() == 1 ? "stays" : "stay"));
+}
+
 // What can fail for want of room comes first; then only names change.
 void finish(const Ladder& ladder, const LadderFiles& files, const std::string& unit, bool toStdout,
             AtomicFile* copy, OutputFolder& out, Console& console) {
@@ -62,17 +134,11 @@ void finish(const Ladder& ladder, const LadderFiles& files, const std::string& u
     file.commit();
     if (copy) writeWhole(*copy, json);
     console.progress().check();
+    tellOfWhatIsLeft(out, files, console);
     console.print(toStdout ? json : textOf(ladder, files, unit));
     console.flush();
     out.commit();
     if (copy) copy->commit();
-}
-
-// Of the triangles of a mesh, or of level 0.
-double share(const std::string& text) {
-    const double ratio = positive(text);
-    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
-    return ratio;
 }
 
 class Lod : public Command {
@@ -82,15 +148,18 @@ class Lod : public Command {
     int run(Console& console) override;
 
   private:
-    void declareLevels();
-    void declareBudgets();
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
+    std::optional<GlbLods> lodsOf(const Solid& solid) const;
+    // Nothing without --view.
+    std::unique_ptr<view::Page> pageOf(const Solid& solid, const std::string& name) const;
 
     LevelOptions levels_;
     BudgetOptions budgets_;
     SolidOptions solid_;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
+    bool view_ = false;
+    std::optional<bool> quantizedLods_;  // --glb-lods
 };
 
 Lod::Lod()
@@ -98,7 +167,7 @@ Lod::Lod()
           {"lod", "INPUT", "a solid -> a ladder of closed meshes, one a level, and a report",
            "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
            "with "
-           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse). -o "
+           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse, pack). -o "
            "out/part "
            "makes "
            "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
@@ -112,58 +181,46 @@ Lod::Lod()
            "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
            "leaves the folder as it was."}) {
     declareOutput("the folder that gets one mesh a level, and report.json");
-    declareLevels();
+    declareLevels(options_, levels_);
     declareFormat(options_, format_);
     space_.declare(options_);
+    options_.value("--glb-lods", "quantized|float", "",
+                   "also one GLB with all levels (MSFT_lod), name_lods.glb: positions of 16 bits "
+                   "(KHR_mesh_quantization), or float32",
+                   [this](const std::string& v) {
+                       quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
+                   });
+    options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareJson();
-    declareBudgets();
+    declareBudgets(options_, budgets_, levels_);
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
     declareQuiet();
 }
 
-void Lod::declareLevels() {
-    options_.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
-                   [this](const std::string& v) { levels_.levels = range(v); });
-    options_.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
-                   [this](const std::string& v) { levels_.steps = range(v); });
-}
-
-void Lod::declareBudgets() {
-    options_.value(
-        "--triangles", "N,N,...", "", "instead of the levels, meshes of at most so many triangles: name_TN",
-        [this](const std::string& v) {
-            budgets_.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
-        });
-    options_.value("--ratio", "R,R,...", "",
-                   "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
-                   "%): name_RR",
-                   [this](const std::string& v) { budgets_.ratios = list(v, share); });
-    options_.value("--tolerance", "D,D,...", "",
-                   "the fewest triangles that stay within D (world units) of level 0, both ways: name_DD",
-                   [this](const std::string& v) { budgets_.tolerances = list(v, positive); });
-    options_.value(
-        "--max-genus", "N", "",
-        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
-        [this](const std::string& v) { levels_.maxGenus = integer(v, 0, kHuge); });
-    options_.value(
-        "--max-parts", "N", "",
-        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
-        [this](const std::string& v) { levels_.maxParts = integer(v, 1, kHuge); });
-    options_.value("--min-component", "VOLUME", "",
-                   "budgets: only from steps without components smaller than that (world units cubed)",
-                   [this](const std::string& v) { budgets_.minComponent = positive(v); });
-}
-
 void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
     if (jsonToFile()) out.keepFree(*json_);
     out.refuseTaken(kReport);
     for (const std::string& file : names.all()) out.refuseTaken(file);
+    if (view_) out.refuseTaken(names.ofPage());
+    if (quantizedLods_) out.refuseTaken(names.ofLods());
+}
+
+std::optional<GlbLods> Lod::lodsOf(const Solid& solid) const {
+    if (!quantizedLods_) return std::nullopt;
+    return GlbLods({space_.of(solid), metresPerUnitOf(solid)}, *quantizedLods_);
+}
+
+std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& name) const {
+    return view_ ? std::make_unique<view::Page>(pageOptionsOf(solid.input(), name)) : nullptr;
 }
 
 int Lod::run(Console& console) {
+    if (view_) view::requirePages();
+    if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
+        throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     OutputFolder out(*output_, Inputs(arguments));
     const MeshFormat format = format_.value_or(MeshFormat::ply);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
@@ -180,9 +237,18 @@ int Lod::run(Console& console) {
     try {
         Solid solid = open(arguments[0], solid_, console.progress());
         const std::string unit = unitShown(solid);
-        MeshWriter writer{names, format, {space_.of(solid), metresPerUnitOf(solid)}, out, {}};
+        MeshWriter writer{.names = names,
+                          .format = format,
+                          .options = {space_.of(solid), metresPerUnitOf(solid)},
+                          .out = out,
+                          .page = pageOf(solid, out.name()),
+                          .lods = lodsOf(solid),
+                          .progress = console.progress(),
+                          .files = {}};
         const Ladder ladder =
             makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), console.progress());
+        writer.writeLods();
+        writer.writePage();
         finish(ladder, writer.files, unit, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {

@@ -35,6 +35,15 @@ std::string MeshNames::ofBudget(const BudgetReport& budget) const {
     return named("chosen");
 }
 
+std::string MeshNames::ofPage() const { return folder_ + ".html"; }
+
+std::string MeshNames::ofLods() const { return folder_ + "_lods.glb"; }
+
+std::string MeshNames::suffixOf(const std::string& name) const {
+    const std::size_t begin = folder_.size() + 1;
+    return name.substr(begin, name.size() - begin - std::string_view(extensionOf(format_)).size());
+}
+
 std::vector<std::string> MeshNames::all() const {
     std::vector<std::string> names;
     const int stride = levels_.steps ? 1 : kStepsPerLevel;

@@ -19,6 +19,12 @@ class MeshNames {
     std::string ofStep(int step) const;
     // part_T20000.ply, part_R0.01.ply, part_D0.5.ply; part_chosen.ply where only the topology is limited.
     std::string ofBudget(const BudgetReport& budget) const;
+    // part.html, the page of --view.
+    std::string ofPage() const;
+    // part_lods.glb, all levels in one file.
+    std::string ofLods() const;
+    // "L2" of part_L2.ply: what the name of a mesh says besides the folder's.
+    std::string suffixOf(const std::string& name) const;
     // Of all steps that may be reached, and of all budgets.
     std::vector<std::string> all() const;
 

@@ -77,6 +77,13 @@ void declareFit(OptionList& options, SolidOptions& solid) {
                   [&](const std::string& v) { solid.band = positive(v); });
 }
 
+// Of the triangles of a mesh, or of level 0.
+double share(const std::string& text) {
+    const double ratio = positive(text);
+    if (ratio > 1) throw UsageError("'" + text + "' is above 1, all triangles");
+    return ratio;
+}
+
 void declareLevelIso(OptionList& options, LevelOptions& level) {
     options.flag("--preserve-volume",
                  "each level at the iso-value that gives it the input's volume (level 0's where it is not "
@@ -181,6 +188,40 @@ void declareMesh(OptionList& options, LevelOptions& level, bool features) {
                  level.deviation);
 }
 
+void declareLevels(OptionList& options, LevelOptions& level) {
+    options.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
+                  [&](const std::string& v) { level.levels = range(v); });
+    options.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
+                  [&](const std::string& v) { level.steps = range(v); });
+}
+
+void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& level) {
+    options.value("--triangles", "N,N,...", "",
+                  "instead of the levels, meshes of at most so many triangles: name_TN",
+                  [&](const std::string& v) {
+                      budgets.triangles = list(v, [](const std::string& n) { return integer(n, 4, kHuge); });
+                  });
+    options.value("--ratio", "R,R,...", "",
+                  "the same as a share of the mesh's own triangles, of level 0's for other inputs (0.01 = 1 "
+                  "%): name_RR",
+                  [&](const std::string& v) { budgets.ratios = list(v, share); });
+    options.value("--tolerance", "D,D,...", "",
+                  "the fewest triangles that stay within D (world units) of the mesh that was read, of "
+                  "level 0 for images, both ways: name_DD",
+                  [&](const std::string& v) { budgets.tolerances = list(v, positive); });
+    options.value(
+        "--max-genus", "N", "",
+        "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",
+        [&](const std::string& v) { level.maxGenus = integer(v, 0, kHuge); });
+    options.value(
+        "--max-parts", "N", "",
+        "at most N parts in every mesh: the others are removed, or joined where that takes less volume",
+        [&](const std::string& v) { level.maxParts = integer(v, 1, kHuge); });
+    options.value("--min-component", "VOLUME", "",
+                  "budgets: only from steps without components smaller than that (world units cubed)",
+                  [&](const std::string& v) { budgets.minComponent = positive(v); });
+}
+
 void declareFeatures(OptionList& options, LevelOptions& level) {
     options.flag("--features",
                  "measure parts, holes and cavities, and say up to which size they vanish (takes longer)",
@@ -225,9 +266,9 @@ double metresPerUnitOf(const Solid& solid) {
     return metresPer(unit.empty() ? "mm" : unit);
 }
 
-Space SpaceChoice::of(const Solid& solid) const {
-    if (!space) return solid.space();
-    if (solid.space() == Space::unspecified)
+Space SpaceChoice::of(Space ofSolid) const {
+    if (!space) return ofSolid;
+    if (ofSolid == Space::unspecified)
         throw UsageError(
             "--space: the axes of this input have no medical meaning (not an image, and no SPACE= in the "
             "mesh); leave it out");

@@ -18,6 +18,11 @@ void declareMaxMemory(OptionList& options, SolidOptions& solid);
 void declareMesh(OptionList& options, LevelOptions& level, bool features);
 void declareFeatures(OptionList& options, LevelOptions& level);
 
+// --levels, --steps: which meshes.
+void declareLevels(OptionList& options, LevelOptions& level);
+// --triangles ... --min-component. A limit on the topology is one of the levels' too, wherefore it goes to `level`.
+void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& level);
+
 // --step, --level.
 struct StepChoice {
     std::optional<int> step, level;
@@ -38,7 +43,8 @@ struct SpaceChoice {
 
     void declare(OptionList& options);
     // Where written meshes have their axes. Throws UsageError for --space on a solid whose axes have no meaning.
-    Space of(const Solid& solid) const;
+    Space of(const Solid& solid) const { return of(solid.space()); }
+    Space of(Space ofSolid) const;
 };
 
 }  // namespace isowave::tools

@@ -98,6 +98,7 @@ int CurveLevels::run(Console& console) {
     const CurveFile file = CurveFile::read(arguments[0]);
     const CurveReport report = reported(file);
     writeFiles(out, filesOf(report, file, arguments[0].extension().string()));
+    readyToTell(console, jsonOf(report));
     out.commit();
     for (const auto& remark : remarks(report)) console.say(remark);
     tell(console, textOf(report), jsonOf(report));

@@ -91,8 +91,9 @@ int FiltersCommand::run(Console& console) {
         return 0;
     }
     const Filters filters = wanted();
-    if (svg_) draw(filters);
     const Proof proof = prove(filters);
+    readyToTell(console, jsonOf(filters, proof));
+    if (svg_) draw(filters);
     tell(console, textOf(filters, proof), jsonOf(filters, proof));
     return 0;
 }

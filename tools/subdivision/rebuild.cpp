@@ -117,6 +117,7 @@ int Rebuild::run(Console& console) {
     }();
 
     OutputFile out(*output_);
+    readyToTell(console, jsonOf(report));
     writePolygonMesh(*output_, mesh);
     out.commit();
     tell(console, textOf(report), jsonOf(report));

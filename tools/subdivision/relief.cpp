@@ -87,6 +87,7 @@ int Relief::run(Console& console) {
         console.say(fmt::format("quincunx takes {} of {} x {} samples, the largest hexagon in the middle",
                                 report.levels.front().patch, grid.rows, grid.columns));
     writeFiles(out, filesOf(report));
+    readyToTell(console, jsonOf(report));
     out.commit();
     tell(console, textOf(report), jsonOf(report));
     return 0;

@@ -100,6 +100,7 @@ int Reverse::run(Console& console) {
         }
     }();
     const DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
+    readyToTell(console, jsonOf(report));
     write(hierarchy);
     if (report.roundTrip > kMeshRoundTrip * report.diagonal)
         console.say("the mesh comes back to " + std::to_string(report.roundTrip / report.diagonal) +

@@ -61,11 +61,12 @@ int Subdivide::run(Console& console) {
             throw InputError(arguments[0].string(), error.what());
         }
     }();
-    OutputFile out(*output_);
-    writePolygonMesh(*output_, mesh);
-    out.commit();
     const SubdivisionReport report{std::string(scheme.name), depth_, before.creases.size(),
                                    mesh.vertexCount(), mesh.faceCount()};
+    OutputFile out(*output_);
+    readyToTell(console, jsonOf(report));
+    writePolygonMesh(*output_, mesh);
+    out.commit();
     tell(console, textOf(report), jsonOf(report));
     return 0;
 }

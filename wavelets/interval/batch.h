@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "wavelets/interval/vectors.h"
+#include "base/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "wavelets/interval/vectors.h"
+#include "base/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/vectors.h"
 #include "wavelets/interval/tables.h"
-#include "wavelets/interval/vectors.h"
 
 namespace isowave::wavelets {
 

@@ -139,7 +139,8 @@ TiffPlanes planesOfImageJ(const std::string& file, const std::vector<TiffPage>& 
         countIn(file, words, "slices", 1, std::max<std::int64_t>(1, images / planes.channels / planes.times));
     planes.behindOnePage = shown == 1 && images > 1 && pages.front().firstByte > 0;
     requirePlanes(file, "ImageJ", planes, planes.behindOnePage ? images : shown);
-    number(planes, {{'T', planes.times}, {'Z', planes.slices}, {'C', planes.channels}}, 0, 0, images);
+    number(planes, {{'T', planes.times}, {'Z', planes.slices}, {'C', planes.channels}}, 0, 0,
+           planes.behindOnePage ? images : shown);
     if (!planes.behindOnePage) skipThumbnails(pages, planes);
 
     takeResolution(pages.front(), planes);

@@ -210,6 +210,19 @@ TEST(Svg, WhatIsNotStraightOrNoNumberIsRefusedWithItsElement) {
     EXPECT_THAT(tell("<svg><polyline points='0 0 a'/></svg>"), HasSubstr("has 'a' among its points"));
 }
 
+TEST(Svg, ATagInsideATagIsNoOtherOne) {
+    const std::string text = "<svg><polygon p<polyline points=\"0 0 1 0 1 1\"/></svg>";
+    const SvgLines svg(text, "a.svg");
+    ASSERT_EQ(svg.lines().size(), 1u);
+    EXPECT_TRUE(svg.lines()[0].closed);
+    EXPECT_EQ(SvgLines(svg.with(svg.lines()), "again").lines().size(), 1u);
+}
+
+TEST(Svg, RelativePiecesThatOverflowAreRefused) {
+    EXPECT_THAT(complaint([] { SvgLines("<path d=\"m 1e308 0 l 1e308 0\"/>", "a.svg"); }),
+                HasSubstr("a.svg: path 1: has relative pieces that add up to no finite number"));
+}
+
 TEST(Svg, NoCutOrDamageCrashes) {
     std::mt19937 random(6);
     for (std::size_t n = 0; n < kDrawing.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <span>
@@ -203,6 +204,31 @@ TEST(IntervalTransform, AMirroredIntervalGivesMirroredResultsToTheBitWhereItIsSh
         IntervalTransform().analyse(mirrored, line.right, line.left, mirroredCoarse, mirroredDetail);
         EXPECT_EQ(coarse, std::vector<double>(mirroredCoarse.rbegin(), mirroredCoarse.rend())) << n;
         EXPECT_EQ(detail, std::vector<double>(mirroredDetail.rbegin(), mirroredDetail.rend())) << n;
+    }
+}
+
+// What every coefficient does alone, by IntervalTransform, with its sign taken away; some of the bounds are negative here,
+// and count as much.
+TEST(BatchGain, IsTheSumOfWhatEachCoefficientCanDo) {
+    std::mt19937 rng(11);
+    std::uniform_real_distribution<float> value(-1, 1);
+    IntervalTransform one;
+    for (int n = 1; n <= 40; ++n) {
+        Lanes lanes(n, 1);
+        lanes.synthesis.left[0] = lanes.synthesis.right[0] = 1;
+        std::vector<double> expected(2 * n + 3), coarse(n + 3), detail(n), fine(2 * n + 3);
+        for (int k = 0; k < 2 * n + 3; ++k) {
+            double& unit = k < n + 3 ? coarse[k] : detail[k - (n + 3)];
+            float& bound = k < n + 3 ? lanes.coarse[0][k] : lanes.detail[0][k - (n + 3)];
+            bound = value(rng);
+            unit = 1;
+            one.synthesise(coarse, detail, 0, 0, fine);
+            unit = 0;
+            for (int i = 0; i < 2 * n + 3; ++i) expected[i] += std::abs(fine[i]) * std::abs(double(bound));
+        }
+        BatchTransform().gain(lanes.synthesis);
+        for (int i = 0; i < 2 * n + 3; ++i)
+            EXPECT_NEAR(lanes.fine[0][i + 1], expected[i], 1e-6 * (1 + expected[i])) << n << ' ' << i;
     }
 }
 

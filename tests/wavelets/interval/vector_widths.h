@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "wavelets/interval/vectors.h"
+#include "base/vectors.h"
 
 namespace isowave::wavelets {
 

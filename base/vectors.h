@@ -2,7 +2,10 @@
 // and uses what it finds. Results never depend on it.
 #pragma once
 
-namespace isowave::wavelets {
+#include <cstdlib>
+#include <string_view>
+
+namespace isowave {
 
 // Doubles in one register: SSE2 or whatever else the compiler takes for granted; AVX2; AVX-512.
 enum class Vectors { two, four, eight };
@@ -21,14 +24,17 @@ enum class Vectors { two, four, eight };
 #define ISOWAVE_EIGHT
 #endif
 
+// ISOWAVE_VECTORS=2 or 4 in the environment forbids wider ones: tests/field/same_bits.py shows with it that results are the same.
 inline Vectors widestVectors() {
 #if defined(__x86_64__) && defined(__GNUC__)
     static const Vectors widest = [] {
+        const char* const most = std::getenv("ISOWAVE_VECTORS");
+        const std::string_view allowed = most ? most : "";
         __builtin_cpu_init();
-        if (!__builtin_cpu_supports("avx2")) return Vectors::two;
+        if (!__builtin_cpu_supports("avx2") || allowed == "2") return Vectors::two;
         const bool eight = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-        return eight ? Vectors::eight : Vectors::four;
+        return eight && allowed != "4" ? Vectors::eight : Vectors::four;
     }();
     return widest;
 #else
@@ -38,4 +44,4 @@ inline Vectors widestVectors() {
 
 #define ISOWAVE_INLINE [[gnu::always_inline]] inline
 
-}  // namespace isowave::wavelets
+}  // namespace isowave

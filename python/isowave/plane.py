@@ -1,0 +1,180 @@
+"""Closed curves in the plane at every level of detail."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Optional, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._html import grouped, short, table
+from ._meshes import PathLike, is_path
+from ._options import given
+from ._volumes import _checked
+from ._watch import ProgressLike, Watch
+from .errors import InputError, UsageError
+from .solids import Range
+
+__all__ = ["CurveLadder", "CurveLevel", "Ring", "curves"]
+
+
+class Ring(NamedTuple):
+    """A closed polyline; the last point is joined to the first, which is not repeated."""
+
+    points: npt.NDArray[np.float64]  #: (N, 2), the input's coordinates
+    parent: int  #: the ring directly around it, -1 for none
+    hole: bool
+
+
+class CurveLevel:
+    """The curves of one level."""
+
+    def __init__(self, ladder: CurveLadder, index: int, report: dict[str, Any]) -> None:
+        self._native = ladder._native
+        self._index = index
+        #: The entry of ``isowave curves --json`` for this step.
+        self.report = report
+
+    @property
+    def level(self) -> int:
+        return self._native.level(self._index)
+
+    @property
+    def rings(self) -> list[Ring]:
+        """Outer rings and holes: simple, pairwise disjoint, inside to the left where y points up."""
+        return [Ring(points, parent, hole) for points, parent, hole in self._native.rings(self._index)]
+
+    def text(self, format: str = "svg") -> str:
+        """The curves as "svg", "geojson" or "txt" (GMT's multiple segments)."""
+        return self._native.text(self._index, format)
+
+    def save(self, path: PathLike) -> None:
+        """Writes .svg, .geojson or .txt."""
+        _write(path, self.text(os.path.splitext(os.fspath(path))[1][1:].lower()))
+
+    def _repr_svg_(self) -> str:
+        return self.text("svg")
+
+    def __repr__(self) -> str:
+        return f"<isowave.CurveLevel: level {self.level}, {self.report['rings']} rings, {self.report['holes']} holes>"
+
+
+def _write(path: PathLike, text: str) -> None:
+    _native.write_text(os.fspath(path), text)
+
+
+class CurveLadder(Sequence[CurveLevel]):
+    """Levels, finest first; one at which nothing is left is not among them."""
+
+    def __init__(self, native: _native.Curves, remarks: list[str]) -> None:
+        self._native = native
+        self.remarks = remarks
+        #: What ``isowave curves --json`` writes.
+        self.report: dict[str, Any] = json.loads(native.report())
+        by_level = {step["level"]: step for step in self.report["steps"] if step["level"] is not None}
+        self._levels = [CurveLevel(self, i, by_level[native.level(i)]) for i in range(len(native))]
+
+    def __len__(self) -> int:
+        return len(self._levels)
+
+    @overload
+    def __getitem__(self, index: int) -> CurveLevel: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[CurveLevel]: ...
+
+    def __getitem__(self, index: Union[int, slice]) -> Union[CurveLevel, list[CurveLevel]]:
+        return self._levels[index]
+
+    def sheet(self) -> str:
+        """One SVG with all levels side by side."""
+        return self._native.sheet()
+
+    def _repr_html_(self) -> str:
+        header = ["level", "outer rings", "holes", "points", "area", "rms to level 0", "max to level 0"]
+        rows = [
+            [str(level.level)]
+            + [grouped(level.report[key]) for key in ("rings", "holes", "points")]
+            + [short(level.report[key]) for key in ("area", "rms_to_level0", "max_to_level0")]
+            for level in self
+        ]
+        return table(f"{os.path.basename(self.report['input']['path'])}: {len(self)} levels", header, rows)
+
+    def __repr__(self) -> str:
+        return f"<isowave.CurveLadder of {self.report['input']['path']}: {len(self)} levels>"
+
+
+Rings = list[list[npt.NDArray[np.float64]]]
+
+
+def _ring(values: Any, number: int) -> npt.NDArray[np.float64]:
+    array = np.asarray(values)
+    if array.ndim != 2 or array.shape[1] < 2 or array.dtype.kind not in "iuf":
+        raise InputError(f"polygons: ring {number} has the shape {array.shape}; expected (N, 2) numbers")
+    if not np.isfinite(array).all():
+        raise InputError(f"polygons: ring {number} has a coordinate that is not finite; leave it out")
+    closed = len(array) > 1 and bool((array[0] == array[-1]).all())
+    return np.ascontiguousarray(array[: len(array) - closed, :2], dtype=np.float64)
+
+
+def _polygons(source: Any) -> Rings:
+    shape = getattr(source, "__geo_interface__", None)
+    if shape is not None:
+        if shape["type"] not in ("Polygon", "MultiPolygon"):
+            raise InputError(f"polygons: is a {shape['type']}; expected Polygon or MultiPolygon")
+        source = [shape["coordinates"]] if shape["type"] == "Polygon" else shape["coordinates"]
+    if not isinstance(source, (list, tuple)):
+        raise UsageError(
+            f"{type(source).__name__} holds no curves; expected a path, a picture (rows, columns), or a list of polygons, "
+            "each a list of rings (N, 2)"
+        )
+    return [[_ring(ring, number) for number, ring in enumerate(polygon)] for polygon in source]
+
+
+def curves(
+    source: Any,
+    *,
+    levels: Optional[Range] = None,
+    hold: Optional[str] = None,
+    smooth: bool = False,
+    flatness: Optional[float] = None,
+    iso: Optional[float] = None,
+    pixels: Optional[int] = None,
+    invert: bool = False,
+    fit: Optional[str] = None,
+    half_width: Optional[float] = None,
+    band: Optional[float] = None,
+    threads: Optional[int] = None,
+    progress: Optional[ProgressLike] = None,
+) -> CurveLadder:
+    """A bitmap or polygons -> closed curves, one set a level. Arguments are the options of ``isowave curves``.
+
+    source: a path (PNG, TIFF, GeoJSON, ...), a picture (rows, columns) of any numbers, a list of polygons, each a list of
+    rings (N, 2), or an object with ``__geo_interface__`` (shapely).
+
+    Coordinates are the input's; of a picture pixels, (0, 0) in the middle of the first one, y pointing down.
+
+    Raises UsageError, InputError as lod() does.
+
+    >>> y, x = np.mgrid[:64, :64]
+    >>> rings = curves(np.hypot(x - 31.5, y - 31.5) < 20)[0].rings
+    >>> len(rings), rings[0].hole, rings[0].points.shape[1]
+    (1, False, 2)
+    """
+    options = given(levels=levels, hold=hold, smooth=smooth, flatness=flatness, iso=iso, pixels=pixels, invert=invert,
+                    fit=fit, half_width=half_width, band=band)  # fmt: skip
+    watch = Watch(progress, threads)
+    if is_path(source):
+        native = _native.curves_of_file(os.fspath(source), options, watch)
+    elif hasattr(source, "dtype"):
+        picture = _checked(source)
+        if picture.ndim != 2:
+            raise InputError(f"picture: has {picture.ndim} dimensions; expected 2, (rows, columns)")
+        native = _native.curves_of_picture(picture.astype(np.float32), options, watch)
+    else:
+        native = _native.curves_of_polygons(_polygons(source), options, watch)
+    return CurveLadder(native, watch.remarks)

@@ -1,0 +1,148 @@
+#include "python/native/ladder.h"
+
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "isowave/error.h"
+#include "isowave/ladder.h"
+#include "lod/budgets.h"
+#include "python/native/arrays.h"
+#include "python/native/options.h"
+#include "python/native/watch.h"
+#include "tools/output.h"
+#include "tools/report/ladder_report.h"
+#include "tools/solids/mesh_names.h"
+#include "tools/solids/solid_options.h"
+
+namespace isowave::python {
+namespace {
+
+// A ladder, and what writing its meshes takes.
+struct MadeLadder {
+    Ladder ladder;
+    SolidChoices choices;
+    Space space = Space::unspecified;
+    double metresPerUnit = 0.001;
+
+    // Levels that have not vanished, then budgets.
+    std::size_t levelCount() const {
+        std::size_t count = ladder.levels.size();
+        while (count > 0 && ladder.levels[count - 1].report.vanished()) --count;
+        return count;
+    }
+    std::size_t size() const { return levelCount() + ladder.budgets.size(); }
+    const TriangleMesh& mesh(std::size_t i) const {
+        return i < levelCount() ? ladder.levels.at(i).mesh : ladder.budgets.at(i - levelCount()).mesh;
+    }
+    bool isLevel(std::size_t i) const { return i < levelCount(); }
+};
+using LadderPointer = std::shared_ptr<MadeLadder>;
+
+// keep: the caller goes on using the solid; else its field goes as soon as the first step is made, and the solid is empty.
+LadderPointer make(Solid& solid, const GivenOptions& given, bool keep, const py::object& watch) {
+    auto made = std::make_shared<MadeLadder>(MadeLadder{{}, SolidChoices(given)});
+    made->space = solid.space();
+    made->metresPerUnit = tools::metresPerUnitOf(solid);
+    checkRanges(made->choices.levels);
+    Solid taken = keep ? solid : std::move(solid);
+    made->ladder = watched(watch, [&](const Progress& progress) {
+        return makeBudget(std::move(taken), made->choices.budgets, made->choices.levels, {}, progress);
+    });
+    return made;
+}
+
+// Before anything is read. Throws UsageError for options that exclude each other.
+void check(const GivenOptions& given) {
+    const SolidChoices choices(given);
+    lod::checkBudgets(choices.budgets, choices.solid.openBorder);
+    checkRanges(choices.levels);
+}
+
+struct WriteChoice {
+    MeshFormat format;
+    MeshWriteOptions options;
+};
+
+WriteChoice choiceOf(const MadeLadder& made, const std::string& format, const std::string& space) {
+    std::optional<MeshFormat> chosen;
+    tools::SpaceChoice spaceChoice;
+    tools::OptionList options;
+    tools::declareFormat(options, chosen);
+    spaceChoice.declare(options);
+    GivenOptions given{{"--format", format}};
+    if (!space.empty()) given.push_back({"--space", space});
+    take(given, options);
+    return {*chosen, {spaceChoice.of(made.space), made.metresPerUnit}};
+}
+
+tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names) {
+    tools::LadderFiles files;
+    for (std::size_t i = 0; i < made.levelCount(); ++i)
+        files.levels.push_back(names.ofStep(made.ladder.levels[i].report.step));
+    for (const BudgetLevel& budget : made.ladder.budgets)
+        files.budgets.push_back(names.ofBudget(budget.report));
+    return files;
+}
+
+// What `isowave lod -o FOLDER` writes. inputs: what no file may take the place of.
+std::vector<std::filesystem::path> save(const MadeLadder& made, const std::filesystem::path& folder,
+                                        const std::string& format, const std::string& space,
+                                        const std::vector<std::filesystem::path>& inputs,
+                                        const py::object& watch) {
+    const WriteChoice choice = choiceOf(made, format, space);
+    return watched(watch, [&](const Progress& progress) {
+        tools::OutputFolder out(folder, tools::Inputs(inputs));
+        const tools::MeshNames names(out.name(), choice.format, made.choices.levels, made.choices.budgets);
+        const tools::LadderFiles files = filesOf(made, names);
+        std::vector<std::string> all = files.levels;
+        all.insert(all.end(), files.budgets.begin(), files.budgets.end());
+        std::vector<std::filesystem::path> places;
+        try {
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                progress("write", static_cast<double>(i) / static_cast<double>(all.size()));
+                writeMesh(out.place(all[i]), made.mesh(i), choice.format, choice.options);
+                places.push_back(out.folder() / all[i]);
+            }
+            tools::writeFiles(out, {{"report.json", tools::jsonOf(made.ladder, files)}});
+            progress.check();
+            out.commit();
+        } catch (const OperationError& error) {
+            throw OperationError(out.publicText(error.what()));
+        }
+        places.push_back(out.folder() / "report.json");
+        return places;
+    });
+}
+
+void write(const MadeLadder& made, std::size_t i, const std::filesystem::path& path,
+           const std::string& space) {
+    const MeshFormat format = meshFormatOf(path);
+    const WriteChoice choice = choiceOf(made, extensionOf(format) + 1, space);
+    const py::gil_scoped_release release;
+    tools::OutputFile out(path);
+    writeMesh(path, made.mesh(i), format, choice.options);
+    out.commit();
+}
+
+py::tuple meshArrays(const LadderPointer& made, std::size_t i) {
+    const py::object owner = py::cast(made);
+    const TriangleMesh& mesh = made->mesh(i);
+    return py::make_tuple(rowsOf<double>(mesh.points, owner), rowsOf<std::int32_t>(mesh.triangles, owner),
+                          rowsOf<float>(mesh.normals, owner));
+}
+
+}  // namespace
+
+void bindLadder(py::module_& module) {
+    py::class_<MadeLadder, LadderPointer>(module, "Ladder")
+        .def("__len__", &MadeLadder::size)
+        .def_property_readonly("level_count", &MadeLadder::levelCount)
+        .def("arrays", meshArrays)
+        .def("report", [](const MadeLadder& made) { return tools::jsonOf(made.ladder); })
+        .def("save", save)
+        .def("write", write);
+    module.def("make_ladder", make);
+    module.def("check_ladder_options", check);
+}
+
+}  // namespace isowave::python

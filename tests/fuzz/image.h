@@ -1,0 +1,12 @@
+// Readers of images: nifti, nrrd, metaimage, mgh, tiff, dicom.
+#pragma once
+
+#include "tests/fuzz/target.h"
+
+namespace isowave::fuzz {
+
+// readImage(), and ImageStream slice by slice, which must give the same values. A file of several volumes is read again with
+// its first one chosen. Compressed DICOM pixels go to GDCM in a child process as in the program (io/image/dicom/codec.h).
+std::vector<Target> imageTargets();
+
+}  // namespace isowave::fuzz

@@ -1,0 +1,79 @@
+"""Curves: what the command makes of the same input."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import DATA, command, complaint
+
+import isowave
+
+AFRICA = DATA / "curves2d/africa.geojson"
+KEYRING = DATA / "curves2d/keyring.png"
+
+
+def command_curves(tmp_path, source, *options):
+    result = command("curves", source, "-o", tmp_path / "out/x", "--json", "-", "--quiet", *options)
+    assert result.returncode == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def stable(report):
+    return {key: [{k: v for k, v in step.items() if k != "file"} for step in value] if key == "steps" else value
+            for key, value in report.items() if key != "peak_memory_bytes"}  # fmt: skip
+
+
+@pytest.mark.parametrize("source, options", [(AFRICA, {"pixels": 256}), (KEYRING, {}), (KEYRING, {"smooth": True, "hold": "none"})])
+def test_report_and_files_are_those_of_the_command(tmp_path, source, options):
+    words = [w for k, v in options.items() for w in ([f"--{k}"] if v is True else [f"--{k}", v])]
+    ladder = isowave.curves(source, **options)
+    assert stable(ladder.report) == stable(command_curves(tmp_path, source, *words))
+    for level in ladder:
+        level.save(tmp_path / "one.svg")
+        assert (tmp_path / "one.svg").read_bytes() == (tmp_path / f"out/x/x_L{level.level}.svg").read_bytes()
+
+
+def test_rings_are_those_of_the_report_and_enclose_its_area():
+    for level in isowave.curves(AFRICA, pixels=256):
+        area = sum(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2 for x, y in (r.points.T for r in level.rings))
+        assert area == pytest.approx(level.report["area"], rel=1e-9)
+        assert sum(r.hole for r in level.rings) == level.report["holes"]
+        assert sum(len(r.points) for r in level.rings) == level.report["points"]
+
+
+def test_polygons_in_memory_are_those_of_a_file(tmp_path):
+    data = json.loads(AFRICA.read_text())
+    polygons = data["geometry"]["coordinates"]
+    of_file, of_lists = isowave.curves(AFRICA, pixels=128), isowave.curves(polygons, pixels=128)
+    assert [level.report for level in of_file] == [level.report for level in of_lists]
+
+    class Shape:
+        __geo_interface__ = {"type": "MultiPolygon", "coordinates": polygons}
+
+    assert [level.report for level in isowave.curves(Shape(), pixels=128)] == [level.report for level in of_file]
+
+
+def test_other_texts_and_the_sheet(tmp_path):
+    ladder = isowave.curves(KEYRING, levels=(0, 2))
+    assert [level.level for level in ladder] == [0, 1, 2]
+    assert json.loads(ladder[0].text("geojson"))["type"] == "FeatureCollection" and ladder[0].text("txt").startswith("> outer")
+    assert ladder.sheet().count("<path") >= 3 and "<svg" in ladder[0]._repr_svg_()
+    assert ladder._repr_html_().count("<tr>") == 4
+    with pytest.raises(isowave.UsageError, match="--format: 'png'"):
+        ladder[0].save(tmp_path / "x.png")
+
+
+def test_errors(tmp_path):
+    with pytest.raises(isowave.UsageError) as caught:
+        isowave.curves(KEYRING, pixels=64)
+    assert str(caught.value) == complaint("curves", KEYRING, "-o", tmp_path / "x", "--pixels", 64)
+    with pytest.raises(isowave.InputError, match="no such file"):
+        isowave.curves(tmp_path / "none.png")
+    with pytest.raises(isowave.InputError, match="3 dimensions"):
+        isowave.curves(np.zeros((3, 3, 3)))
+    with pytest.raises(isowave.InputError, match="ring 0 has the shape"):
+        isowave.curves([[[1, 2, 3]]])
+    with pytest.raises(isowave.UsageError, match="holds no curves"):
+        isowave.curves(3)
+    with pytest.raises(isowave.UsageError, match="--band is larger"):
+        isowave.curves(KEYRING, band=5)
