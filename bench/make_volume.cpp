@@ -1,4 +1,5 @@
 // make_volume N OUT: a mask of N^3 voxels of uint8, 0 or 1, written a slice at a time; OUT ends in .raw, .mha or .nrrd.
+// make_volume N OUT part: instead the solid of bench/part.h in grey, 0 .. 200, which falls over two voxels; its surface is at 100.
 //
 // A flange: a disc with a bore and eight bolt holes, turned so that none of its faces lies along the lattice. Its
 // surface is about 2.2 N^2 voxel faces whatever N is. Rows are cut analytically (a row meets each cylinder in one
@@ -13,6 +14,8 @@
 #include <iostream>
 #include <string>
 #include <vector>
+
+#include "part.h"
 
 namespace {
 
@@ -90,6 +93,14 @@ struct Flange {
     }
 };
 
+void fillGrey(const isowave::bench::PerforatedPart& part, long y, long z, std::vector<char>& row) {
+    for (std::size_t x = 0; x < row.size(); ++x) {
+        const double distance = part({double(x), double(y), double(z)});
+        row[x] = static_cast<char>(
+            static_cast<unsigned char>(std::lround(std::clamp(100 - 100 * distance, 0.0, 200.0))));
+    }
+}
+
 std::string headerFor(const std::string& name, long n) {
     const std::string size = std::to_string(n) + ' ' + std::to_string(n) + ' ' + std::to_string(n) + '\n';
     if (name.ends_with(".mha"))
@@ -104,20 +115,25 @@ std::string headerFor(const std::string& name, long n) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const long n = argc == 3 ? std::strtol(argv[1], nullptr, 10) : 0;
+    const bool isPart = argc == 4 && std::strcmp(argv[3], "part") == 0;
+    const long n = argc == 3 || isPart ? std::strtol(argv[1], nullptr, 10) : 0;
     if (n < 1) {
-        std::cerr << "usage: make_volume N OUT.raw|OUT.mha|OUT.nrrd\n";
+        std::cerr << "usage: make_volume N OUT.raw|OUT.mha|OUT.nrrd [part]\n";
         return 2;
     }
     const std::string name = argv[2];
     std::ofstream file(name, std::ios::binary);
     file << headerFor(name, n);
     const Flange flange(static_cast<double>(n));
+    const isowave::bench::PerforatedPart part(static_cast<int>(n));
     std::vector<char> row(static_cast<std::size_t>(n));
     for (long z = 0; z < n; ++z)
         for (long y = 0; y < n; ++y) {
             std::fill(row.begin(), row.end(), char(0));
-            flange.fill(static_cast<double>(y), static_cast<double>(z), row);
+            if (isPart)
+                fillGrey(part, y, z, row);
+            else
+                flange.fill(static_cast<double>(y), static_cast<double>(z), row);
             file.write(row.data(), n);
         }
     if (!file.flush()) {

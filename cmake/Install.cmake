@@ -15,7 +15,7 @@ set(ISOWAVE_COMPONENTS base curves subdivision volume)
 set(base_modules base mesh picture vector)
 set(curves_modules interval curves2d)
 set(subdivision_modules subdivision_filters subdivision_curves subdivision_lattice subdivision_meshes subdivision)
-set(volume_modules image volume wavelets polygonize hold lod without_simplify)
+set(volume_modules image volume compress_coder compress wavelets polygonize hold lod without_simplify)
 set(all_modules ${base_modules} ${curves_modules} ${subdivision_modules} ${volume_modules})
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/isowave)
 

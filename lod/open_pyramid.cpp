@@ -1,26 +1,35 @@
 #include "lod/open_pyramid.h"
 
+#include "lod/packing/pack.h"
 #include "lod/source.h"
 #include "wavelets/pyramid_file.h"
 
 namespace isowave::lod {
+namespace {
 
-Solid::State openPyramid(const std::filesystem::path& path, int finestStep, StageClock& clock) {
-    const StageClock::Scope scope(clock, "read");
-    return stateOf(wavelets::readPyramid(path, finestStep), path.string());
+using Source = std::map<std::string, std::string>;
+
+// Puts the solid's field or pyramid in, and returns what its file says of where it came from.
+Source read(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress,
+            Solid::State& solid) {
+    if (!compress::isPackedPath(path)) {
+        solid.pyramid = wavelets::readPyramid(path, options.finestStep);
+        return solid.pyramid->source;
+    }
+    compress::PackedField packed = openPacked(path, options.maxMemory, progress);
+    solid.field = std::move(packed.field);
+    return packed.source;
 }
 
-Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
-    Solid::State solid;
-    solid.pyramid = std::move(pyramid);
-    const auto& source = solid.pyramid->source;
+// What its file says of where it came from.
+void describe(Solid::State& solid, const std::string& name, const Source& source) {
     InputReport& input = solid.input;
     input.path = name;
     input.kind = InputReport::Kind::pyramid;
     input.source = source;
     input.madeFrom = inputOfSource(source);
     solid.fit = fitOfSource(source);
-    if (!input.madeFrom) return solid;
+    if (!input.madeFrom) return;
     input.dimensions = input.madeFrom->dimensions;
     input.spacing = input.madeFrom->spacing;
     input.iso = input.madeFrom->iso;
@@ -28,6 +37,23 @@ Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
     input.space = input.madeFrom->space;
     solid.openBorder = borderOf(*input.madeFrom);
     solid.space = input.space.value_or(Space::unspecified);
+}
+
+}  // namespace
+
+Solid::State openPyramid(const std::filesystem::path& path, const SolidOptions& options,
+                         const Progress& progress, StageClock& clock) {
+    const StageClock::Scope scope(clock, "read");
+    Solid::State solid;
+    const Source source = read(path, options, progress, solid);
+    describe(solid, path.string(), source);
+    return solid;
+}
+
+Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
+    Solid::State solid;
+    solid.pyramid = std::move(pyramid);
+    describe(solid, name, solid.pyramid->source);
     return solid;
 }
 

@@ -1,8 +1,10 @@
 #include "isowave/pyramid.h"
 
+#include "compress/packed_file.h"
 #include "isowave/error.h"
 #include "lod/field_state.h"
 #include "lod/open_pyramid.h"
+#include "lod/packing/pack.h"
 #include "lod/pyramid_state.h"
 #include "lod/source.h"
 #include "lod/steps.h"
@@ -10,11 +12,20 @@
 
 namespace isowave {
 
-Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep) {
-    return PyramidAccess::make(wavelets::readPyramid(path, finestStep));
+Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep, const Progress& progress) {
+    if (!compress::isPackedPath(path)) return PyramidAccess::make(wavelets::readPyramid(path, finestStep));
+    compress::PackedField packed = lod::openPacked(path, {}, progress);
+    wavelets::Pyramid pyramid = wavelets::analyse(packed.field, {}, progress);
+    pyramid.source = std::move(packed.source);
+    return PyramidAccess::make(std::move(pyramid));
 }
 
-void Pyramid::save(const std::filesystem::path& path) const { wavelets::writePyramid(path, state_->pyramid); }
+void Pyramid::save(const std::filesystem::path& path) const {
+    if (compress::isPackedPath(path))
+        lod::packExactly(state_->pyramid.field(0), state_->pyramid.source, path);
+    else
+        wavelets::writePyramid(path, state_->pyramid);
+}
 
 double Pyramid::K() const { return state_->pyramid.K; }
 int Pyramid::stepCount() const { return state_->pyramid.stepCount(); }
@@ -31,7 +42,9 @@ const std::map<std::string, std::string>& Pyramid::source() const { return state
 
 Pyramid analyse(Solid solid, const Progress& progress) {
     if (solid.isPyramid()) throw UsageError(solid.input().path + " is a pyramid already");
-    auto source = lod::sourceOf(solid.input(), solid.fit());
+    const InputReport& input = solid.input();
+    auto source = input.kind == InputReport::Kind::pyramid ? input.source
+                                                           : lod::sourceOf(input, solid.fit());  // packed
     wavelets::Pyramid pyramid = wavelets::analyse(SolidAccess::takeField(std::move(solid)), {}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));

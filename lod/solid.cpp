@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compress/packed_file.h"
 #include "io/image/formats/foreign.h"
 #include "io/image/view.h"
 #include "io/mesh/read.h"
@@ -100,6 +101,7 @@ InputKind kindOf(const fs::path& path, const SolidOptions& options) {
         return InputKind::image;
     if (hasExtension(path, ".vdb"))
         return wavelets::isPyramidFile(path) ? InputKind::pyramid : InputKind::vdb;
+    if (compress::isPackedPath(path)) return InputKind::pyramid;
     if (isMeshPath(path)) return InputKind::mesh;
     if (isImagePath(path)) return InputKind::image;
     if (const auto text = imageio::foreignText(path)) throw InputError(path.string(), *text);
@@ -137,7 +139,7 @@ Solid open(const fs::path& path, const SolidOptions& options, const Progress& pr
             case lod::InputKind::pyramid:
                 break;
         }
-        return lod::openPyramid(path, options.finestStep, clock);
+        return lod::openPyramid(path, options, progress, clock);
     });
 }
 

@@ -42,10 +42,13 @@ class ISOWAVE_EXPORT Pyramid {
   public:
     struct State;  // lod/pyramid_state.h
 
-    // finestStep: what only finer steps need is not read; field() takes step >= finestStep then, and steps() is not to be
+    // A packed solid (.iwz) is analysed again: the steps are those of the solid that was packed, to the bit.
+    // finestStep: of a pyramid's file, what only finer steps need is not read; field() takes step >= finestStep then, and steps() is not to be
     // called. Throws InputError for a file that is no pyramid or damaged.
-    static Pyramid open(const std::filesystem::path& path, int finestStep = 0);
-    // One .vdb. Written under a temporary name, then renamed. Throws OperationError.
+    // Says, of a solid that was packed within a bound, that it was; Cancelled.
+    static Pyramid open(const std::filesystem::path& path, int finestStep = 0, const Progress& progress = {});
+    // One .vdb; or, where the name ends in .iwz, level 0 alone, packed to the bit. Analysis of level 0 as synthesis gives
+    // it back differs from this pyramid by rounding; pack the solid itself to keep its steps to the bit. Written under a temporary name, then renamed. Throws OperationError.
     void save(const std::filesystem::path& path) const;
 
     double K() const;
@@ -73,5 +76,49 @@ ISOWAVE_EXPORT Pyramid analyse(Solid solid, const Progress& progress = {});
 // The solid that was taken apart, as open() gives it of the pyramid's file: levels are read off the pyramid, nothing is
 // analysed again. It shares the pyramid's memory.
 ISOWAVE_EXPORT Solid solidOf(const Pyramid& pyramid);
+
+// ---- packed solids: level 0 in as few bytes as possible, from which all else is computed again
+//
+//   pack(open("part.stl"), "part.iwz");                                                 // to the bit
+//   pack(open("part.stl"), "small.iwz", {.bound = Length{0.1, Length::Unit::voxels}});  // F within a tenth of a voxel
+//   Solid part = open("small.iwz");                                                     // everything takes it
+//
+// With a bound every lattice sign stays as it is, and so do the triangles of level 0's mesh, its parts and its handles.
+
+struct Length {
+    enum class Unit { voxels, world };  // world: millimetres for images
+    double value = 0;
+    Unit unit = Unit::voxels;
+};
+
+struct PackOptions {
+    // How far F may move at corners of nodes that the surface passes, as a distance; nothing: not at all. F of a fit that is no
+    // distance is scaled by its slope at the surface. World units count by the lattice's largest spacing.
+    std::optional<Length> bound = {};
+    // How far vertices of level 0's mesh may move. The bound is made smaller until it holds; without a bound it begins there.
+    // Voxels count by the lattice's smallest spacing.
+    std::optional<Length> maxDistance = {};
+};
+
+struct PackReport {
+    std::optional<double> boundVoxels;  // that was kept: what was asked for, or less; nothing: lossless
+    std::int64_t controlPoints = 0;
+    std::int64_t bytes = 0;  // of the file
+    std::int64_t headBytes = 0, nodeBytes = 0, signBytes = 0, valueBytes = 0;
+    int chunks = 0;  // that are decoded each by a thread
+    // With a bound:
+    double voxelsPerK = 0;                        // F of K is a distance of so many voxels
+    double stepVoxels = 0;                        // of the quantiser, at the surface
+    double largestVoxels = 0, rmsVoxels = 0;      // change of F at corners of nodes that the surface passes
+    double largestDistance = 0, rmsDistance = 0;  // that vertices of level 0's mesh moved, world units
+    std::int64_t triangles = 0;                   // of that mesh, the same before and after
+    double seconds = 0;
+};
+
+// Checked by decoding before the file is renamed into place: lossless to the bit; with a bound the bound, all signs, the triangles
+// and maxDistance. Throws UsageError for a bound or distance that is not above 0; InputError for a solid that cannot be
+// packed; OperationError where the promise cannot be kept or the file not be written; Cancelled.
+ISOWAVE_EXPORT PackReport pack(Solid solid, const std::filesystem::path& path,
+                               const PackOptions& options = {}, const Progress& progress = {});
 
 }  // namespace isowave

@@ -170,12 +170,18 @@ class Pyramid:
 
     @classmethod
     def load(cls, path: PathLike) -> Pyramid:
-        """Reads a file of save() or of ``isowave analyse``. Raises InputError for what is no pyramid or damaged."""
+        """Reads a file of save(), ``isowave analyse`` or ``isowave pack``, whose steps are computed again.
+
+        Raises InputError for what is no pyramid or damaged.
+        """
         watch = Watch()
         return cls(_native.load_pyramid(os.fspath(path), watch), watch.remarks)
 
     def save(self, path: PathLike) -> None:
-        """Writes one .vdb, which appears whole or not at all. Raises UsageError for another extension, OperationError."""
+        """Writes one .vdb, or level 0 alone, packed, into an .iwz; it appears whole or not at all.
+
+        Raises UsageError for another extension, OperationError.
+        """
         self._native.save(os.fspath(path))
 
     @property

@@ -51,10 +51,17 @@ py::tuple polygonized(const Field& field, int refine, double iso, const py::obje
     }));
 }
 
+void requireName(const Field&, const std::filesystem::path& path) {
+    if (path.extension() != ".vdb") throw UsageError(path.string() + ": fields are .vdb files; name it so");
+}
+void requireName(const Pyramid&, const std::filesystem::path& path) {
+    if (path.extension() != ".vdb" && path.extension() != ".iwz")
+        throw UsageError(path.string() + ": pyramids are .vdb files, packed ones .iwz; name it so");
+}
+
 template <class Saved>
 void save(const Saved& saved, const std::filesystem::path& path) {
-    if (path.extension() != ".vdb")
-        throw UsageError(path.string() + ": pyramids and fields are .vdb files; name it so");
+    requireName(saved, path);
     const py::gil_scoped_release release;
     tools::OutputFile out(path);
     saved.save(path);
@@ -62,7 +69,7 @@ void save(const Saved& saved, const std::filesystem::path& path) {
 }
 
 Pyramid load(const std::filesystem::path& path, const py::object& watch) {
-    return watched(watch, [&](const Progress&) { return Pyramid::open(path); });
+    return watched(watch, [&](const Progress& progress) { return Pyramid::open(path, 0, progress); });
 }
 
 Pyramid taken(const Solid& solid, const py::object& watch) {

@@ -54,10 +54,11 @@ std::map<std::string, std::set<std::string>> makeArrows() {
     for (const std::string& format : io) add(format, {});
     add("io/image", {"io/picture"});  // a folder of PNG slices
     // Each of these may use all that the ones before it may.
-    std::set<std::string> below = {"io/image", "io/mesh", "wavelets/interval"};
+    std::set<std::string> below = {"io/image", "io/mesh", "wavelets/interval", "compress/coder"};
+    add("compress/coder", {});
     add("wavelets/interval", {});
     add("volume", {"io/image", "io/mesh"});
-    for (const std::string part : {"volume", "wavelets", "polygonize", "hold"}) {
+    for (const std::string part : {"volume", "compress", "wavelets", "polygonize", "hold"}) {
         if (part != "volume") add(part, below);
         below.insert(part);
     }
@@ -93,6 +94,7 @@ const std::set<std::string> kWithoutGrids = {"isowave",
                                              "io/picture",
                                              "io/vector",
                                              "wavelets/interval",
+                                             "compress/coder",
                                              "curves2d",
                                              "subdivision",
                                              "subdivision/filters",
@@ -200,6 +202,7 @@ constexpr Registry kRegistries[] = {
     {"tools/help_command.cpp", kSubcommand},
     {"tools/curves/curves.cpp", kSubcommand},
     {"tools/solids/analyse.cpp", kSubcommand},
+    {"tools/solids/pack.cpp", kSubcommand},
     {"tools/solids/check.cpp", kSubcommand},
     {"tools/solids/compare.cpp", kSubcommand},
     {"tools/solids/field.cpp", kSubcommand},

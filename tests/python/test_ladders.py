@@ -189,6 +189,35 @@ def test_pyramid_there_and_back(tmp_path):
         isowave.Pyramid.load(tmp_path / "no.vdb")
 
 
+def test_a_packed_solid_is_a_pyramid_and_a_source(tmp_path):
+    assert command("pack", GEAR, "--voxels", 32, "-o", tmp_path / "gear.iwz").returncode == 0
+    whole = isowave.analyse(GEAR, voxels=32)
+    packed = isowave.Pyramid.load(tmp_path / "gear.iwz")
+    assert packed.steps == whole.steps and packed.remarks == []
+    for step in (0, 3):
+        a, b = (pyramid.field(step).polygonize() for pyramid in (packed, whole))
+        np.testing.assert_array_equal(a.points, b.points)
+    (level,) = isowave.lod(tmp_path / "gear.iwz", levels=(2, 2))
+    np.testing.assert_array_equal(level.points, isowave.lod(GEAR, voxels=32, levels=(2, 2))[0].points)
+
+
+def test_a_pyramid_is_saved_as_a_packed_solid(tmp_path):
+    whole = isowave.analyse(GEAR, voxels=32)
+    whole.save(tmp_path / "gear.iwz")
+    back = isowave.Pyramid.load(tmp_path / "gear.iwz")
+    a, b = (pyramid.field(0).polygonize() for pyramid in (back, whole))
+    np.testing.assert_array_equal(a.triangles, b.triangles)
+    np.testing.assert_allclose(a.points, b.points, atol=1e-4)  # level 0 is analysed and put together twice
+    with pytest.raises(isowave.UsageError, match="packed ones .iwz"):
+        whole.save(tmp_path / "gear.zip")
+
+
+def test_a_solid_within_a_bound_says_so(tmp_path):
+    assert command("pack", GEAR, "--voxels", 32, "--bound", "0.1voxel", "-o", tmp_path / "gear.iwz").returncode == 0
+    (remark,) = isowave.Pyramid.load(tmp_path / "gear.iwz").remarks
+    assert "within 0.1 voxels of what was packed" in remark
+
+
 def test_errors_of_the_job_are_the_commands_one_line(tmp_path):
     for options in ({"voxels": 3}, {"voxel": -1}, {"refine": 3}, {"voxels": 32, "voxel": 1}, {"voxels": 32, "levels": 40},
                     {"iso": 1}, {"ratio": 2}, {"max_genus": -1}, {"unit": "yd"}, {"voxels": 64, "max_memory": 1e-6}):  # fmt: skip

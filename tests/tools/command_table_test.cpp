@@ -5,7 +5,7 @@ namespace isowave::tools_test {
 namespace {
 
 const std::vector<std::string> kCommands{
-    "lod",     "analyse",      "mesh",   "field",   "info",    "check",     "compare", "view",
+    "lod",     "analyse",      "mesh",   "field",   "info",    "check",     "compare", "view",      "pack",
     "filters", "curve-levels", "relief", "reverse", "rebuild", "subdivide", "help",    "completion"};
 
 TEST(Help, ListsEverySubcommandAndEveryExitCode) {

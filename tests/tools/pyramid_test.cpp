@@ -21,20 +21,28 @@ class TorusPyramid : public ::testing::Test {
 };
 
 TEST_F(TorusPyramid, IsAnInputOfLodLikeTheSolidItself) {
-    succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "-o", (folder / "direct").string()});
-    succeed({"lod", pyramid(), "-o", (folder / "again").string()});
-    const Json direct = jsonFile(folder / "direct/report.json"),
-               again = jsonFile(folder / "again/report.json");
-    EXPECT_EQ(again["input"]["kind"], "pyramid");
-    EXPECT_EQ(again["input"]["source"]["path"], direct["input"]["path"]);
-    EXPECT_EQ(again["fit"], direct["fit"]);
-    EXPECT_EQ(again["steps"], direct["steps"]);
-    EXPECT_EQ(again["coefficients_stored"], direct["coefficients_stored"]);
-    EXPECT_EQ(again["control_points"], direct["control_points"]);
-    ASSERT_EQ(again["levels"].size(), direct["levels"].size());
-    for (std::size_t i = 0; i < direct["levels"].size(); ++i)
-        for (const char* key : {"step", "level", "spacing", "control_points", "nodes", "triangles", "genus"})
-            EXPECT_EQ(again["levels"][i][key], direct["levels"][i][key]) << i << key;
+    for (const std::string hold : {"none", "local"}) {
+        succeed({"lod", (folder / "torus.stl").string(), "--voxels", "40", "--hold", hold, "-o",
+                 (folder / ("direct" + hold)).string()});
+        succeed({"lod", pyramid(), "--hold", hold, "-o", (folder / ("again" + hold)).string()});
+        const Json direct = jsonFile(folder / ("direct" + hold) / "report.json"),
+                   again = jsonFile(folder / ("again" + hold) / "report.json");
+        EXPECT_EQ(again["input"]["kind"], "pyramid");
+        EXPECT_EQ(again["input"]["source"]["path"], direct["input"]["path"]);
+        for (const char* key : {"fit", "steps", "coefficients_stored", "control_points"})
+            EXPECT_EQ(again[key], direct[key]) << key;
+        ASSERT_EQ(again["levels"].size(), direct["levels"].size());
+        for (std::size_t i = 0; i < direct["levels"].size(); ++i) {
+            const Json &expected = direct["levels"][i], &found = again["levels"][i];
+            for (const char* key : {"step", "level", "spacing", "control_points", "nodes", "genus"})
+                EXPECT_EQ(found[key], expected[key]) << hold << i << key;
+            // What holds thin places is an iteration, which makes more of the last bits of a field that is put together
+            // again. Seen: 30 and 32 triangles at level 4.
+            EXPECT_NEAR(found["triangles"].get<double>(), expected["triangles"].get<double>(),
+                        hold == "none" ? 0 : 8)
+                << hold << i;
+        }
+    }
 }
 
 TEST_F(TorusPyramid, IsTheSameFileForEveryNumberOfThreads) {

@@ -98,6 +98,28 @@ TEST(View, OfAPyramidHasAllItsLevels) {
     EXPECT_EQ(document["levels"][0]["facts"]["rms"], 0);
 }
 
+// Level 0 of a pyramid is put together of its steps, that of a packed solid is what was packed: they differ by rounding.
+TEST(View, OfAPackedSolidIsThatOfItsPyramid) {
+    const Folder folder;
+    SKIP_WITHOUT_PAGES(folder);
+    const std::string pyramid = (folder / "part.pyramid.vdb").string(),
+                      packed = (folder / "part.iwz").string();
+    const std::string page = (folder / "p.html").string(), other = (folder / "q.html").string();
+    succeed({"analyse", kPart, "--voxels", "32", "-o", pyramid});
+    succeed({"pack", kPart, "--voxels", "32", "-o", packed});
+    succeed({"view", pyramid, "-o", page});
+    succeed({"view", packed, "-o", other});
+    const nlohmann::json a = documentOf(page), b = documentOf(other);
+    EXPECT_EQ(b["title"], "part");
+    EXPECT_EQ(namesIn(b), namesIn(a));
+    EXPECT_EQ(b["levels"][0]["triangles"], a["levels"][0]["triangles"]);
+    for (std::size_t i = 0; i < a["levels"].size(); ++i) {
+        const nlohmann::json x = a["levels"][i]["facts"], y = b["levels"][i]["facts"];
+        EXPECT_EQ(y["handles"], x["handles"]);
+        EXPECT_NEAR(y["volume"], x["volume"].get<double>(), 0.05 * x["volume"].get<double>());
+    }
+}
+
 TEST(View, OfSeveralMeshesHasARowEach) {
     const Folder folder;
     SKIP_WITHOUT_PAGES(folder);

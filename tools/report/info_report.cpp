@@ -138,6 +138,7 @@ std::string textOf(const VdbInfo& info) {
 
 std::string jsonOf(const PyramidInfo& info) {
     Json json = start(info.path, "pyramid");
+    json["packed"] = info.packed;
     json["format_version"] = info.formatVersion;
     json["K"] = info.K;
     json["source"] = info.source;
@@ -171,8 +172,8 @@ std::string textOf(const PyramidInfo& info) {
                    std::string(1, f.halvedAxis ? "xyz"[*f.halvedAxis] : '-'), timesText(f.spacing),
                    timesText(f.domain), grouped(f.controlPoints), grouped(f.nodes), grouped(f.details),
                    grouped(f.coefficients), fmt::format("{:.0f} %", 100 * f.leafOccupancy)});
-    std::string text =
-        fmt::format("{}: pyramid of {} steps, K {:g}\n", info.path, info.steps.size() - 1, info.K);
+    std::string text = fmt::format("{}: {} of {} steps, K {:g}\n", info.path,
+                                   info.packed ? "packed solid" : "pyramid", info.steps.size() - 1, info.K);
     for (const auto& [key, value] : info.source) text += fmt::format("{:<22}{}\n", key, value);
     text += table.text();
     const auto perPoint = [&](std::int64_t n) {

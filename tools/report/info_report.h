@@ -48,6 +48,7 @@ std::string textOf(const VdbInfo& info);
 
 struct PyramidInfo {
     std::string path;
+    bool packed = false;  // .iwz: its steps were computed again
     int formatVersion = 1;
     double K = 1;
     std::map<std::string, std::string> source;

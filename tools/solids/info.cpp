@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "compress/packed_file.h"
+#include "compress/sections.h"
 #include "io/mesh/equal_points.h"
 #include "isowave/error.h"
 #include "lod/open_image.h"
@@ -70,7 +72,9 @@ PyramidInfo pyramidInfo(const fs::path& path, const LevelOptions& options, Conso
     const Pyramid pyramid = Pyramid::open(path);
     PyramidInfo info;
     info.path = path.string();
-    info.formatVersion = wavelets::kPyramidFormatVersion;
+    info.packed = compress::isPackedPath(path);
+    info.formatVersion =
+        info.packed ? static_cast<int>(compress::kPackedFormatVersion) : wavelets::kPyramidFormatVersion;
     info.K = pyramid.K();
     info.source = pyramid.source();
     info.coefficientsStored = pyramid.coefficientsStored();

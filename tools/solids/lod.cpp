@@ -208,7 +208,7 @@ Lod::Lod()
           {"lod", "INPUT...", "a solid -> a ladder of closed meshes, one a level, and a report",
            "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
            "with "
-           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse). -o "
+           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse, pack). -o "
            "out/part "
            "makes "
            "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "

@@ -217,9 +217,15 @@ PagePointer pageOfFolder(const fs::path& folder, Console& console) {
 
 // ---- pyramids and subdivisions
 
+// part.pyramid.vdb and part.iwz: part
+std::string nameOfPyramid(const fs::path& path) {
+    const fs::path stem = path.stem();
+    return (stem.extension() == ".pyramid" ? stem.stem() : stem).string();
+}
+
 PagePointer pageOfPyramid(const fs::path& path, Console& console) {
     Solid solid = open(path, {}, console.progress());
-    auto page = std::make_unique<view::Page>(pageOptionsOf(solid.input(), path.stem().stem().string()));
+    auto page = std::make_unique<view::Page>(pageOptionsOf(solid.input(), nameOfPyramid(path)));
     const auto add = [&](const LevelReport& level, const TriangleMesh& mesh) {
         page->add(factsOf(level, fmt::format("L{}", *level.level), true), mesh, console.progress());
     };
@@ -267,11 +273,13 @@ PagePointer pageOfDetails(const fs::path& path, Console& console) {
 
 PagePointer pageOfFile(const fs::path& path, Console& console) {
     if (isDetailsFile(path)) return pageOfDetails(path, console);
-    if (extensionOf(path) == ".vdb" && lod::kindOf(path, {}) == lod::InputKind::pyramid)
+    const std::string extension = extensionOf(path);
+    if ((extension == ".vdb" || extension == ".iwz") && lod::kindOf(path, {}) == lod::InputKind::pyramid)
         return pageOfPyramid(path, console);
     throw InputError(
         path.string(),
-        "is nothing that view shows: a folder of isowave lod or curves, a pyramid, a mesh, curves "
+        "is nothing that view shows: a folder of isowave lod or curves, a pyramid, a packed solid, a mesh, "
+        "curves "
         "(GeoJSON, SVG, text) or the details of isowave reverse; make levels of a scan or a level "
         "set with isowave lod first");
 }

@@ -17,7 +17,8 @@ class View : public Command {
     View()
         : Command(
               {"view", "INPUT...", "levels -> one html file to look at, which needs no network",
-               "INPUT is a folder of lod or curves, a pyramid (analyse), the details of reverse, or one or "
+               "INPUT is a folder of lod or curves, a pyramid (analyse, pack), the details of reverse, or "
+               "one or "
                "several meshes or curves. The page has a slider over the levels, two of them side by side or "
                "overlaid, colours by distance to the first level, a cut plane, a table and plots. It opens "
                "from the disk in any browser of 2023 or later that has WebGL. "

@@ -20,8 +20,6 @@ namespace {
 using openvdb::Coord;
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 using BoolLeaf = openvdb::BoolTree::LeafNodeType;
-using Upper = openvdb::FloatTree::RootNodeType::ChildNodeType;
-using Lower = Upper::ChildNodeType;
 
 // ---- leaves
 
@@ -73,44 +71,6 @@ void addBeside(const BoolLeaf& leaf, int reach, std::vector<std::uint64_t>& numb
         for (int y = first[1]; y <= last[1]; ++y)
             for (int z = first[2]; z <= last[2]; ++z)
                 numbers.push_back(numberOf(leaf.origin().offsetBy(8 * x, 8 * y, 8 * z)));
-}
-
-// ---- hang
-
-// Leaves of a region, which is one internal node.
-using Region = std::vector<FloatLeafPtr*>;
-
-std::vector<Region> regionsOf(std::vector<FloatLeafPtr>& leaves) {
-    std::vector<FloatLeafPtr*> order;
-    for (FloatLeafPtr& leaf : leaves)
-        if (leaf) order.push_back(&leaf);
-    const auto regionOf = [](const FloatLeafPtr* leaf) {
-        return (*leaf)->origin() & ~std::int32_t(Lower::DIM - 1);
-    };
-    tbb::parallel_sort(order.begin(), order.end(), [&](const FloatLeafPtr* a, const FloatLeafPtr* b) {
-        const Coord p = regionOf(a), q = regionOf(b);
-        return p != q ? p < q : (*a)->origin() < (*b)->origin();
-    });
-    std::vector<Region> regions;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i == 0 || regionOf(order[i]) != regionOf(order[i - 1])) regions.emplace_back();
-        regions.back().push_back(order[i]);
-    }
-    return regions;
-}
-
-void hang(std::vector<FloatLeafPtr>& leaves, openvdb::FloatTree& tree) {
-    std::vector<Region> regions = regionsOf(leaves);
-    std::vector<std::unique_ptr<Lower>> nodes(regions.size());
-    tbb::parallel_for(std::size_t(0), regions.size(), [&](std::size_t i) {
-        nodes[i] = std::make_unique<Lower>((*regions[i].front())->origin(), tree.background());
-        for (FloatLeafPtr* leaf : regions[i]) nodes[i]->addChild(leaf->release());
-    });
-    for (auto& node : nodes) {
-        const Coord origin = node->origin();
-        if (!tree.root().probeNode<Upper>(origin)) tree.root().addChild(new Upper(origin, tree.background()));
-        tree.root().probeNode<Upper>(origin)->addChild(node.release());
-    }
 }
 
 // ---- wider
@@ -193,7 +153,7 @@ openvdb::FloatGrid::Ptr bandGrid(std::vector<FloatLeafPtr> leaves, const NodeCol
     const openvdb::BoolTree& inside = signs.grid->constTree();
     auto grid = openvdb::FloatGrid::create(known);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    hang(leaves, grid->tree());
+    hangLeaves(leaves, grid->tree());
     fillInsideTiles(grid->tree(), inside, -1, -known);
     if (w > known) {
         grid = openvdb::tools::dilateSdf(*grid, static_cast<int>(std::ceil(w - known)) + 1,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volume/distance/crossings.h"
+#include "volume/distance/leaves.h"
 #include "volume/field.h"
 #include "volume/vdb.h"
 
@@ -18,8 +19,6 @@ namespace isowave {
 // Origins of the leaves with a lattice point nearer than `reach` voxels, in the maximum norm, to the box around the nodes of
 // some leaf of `nodes`; ascending by z, then y, then x.
 std::vector<openvdb::Coord> leavesWithin(const NodeCollection& nodes, int reach);
-
-using FloatLeafPtr = std::unique_ptr<openvdb::FloatTree::LeafNodeType>;
 
 // What one thread makes leaves with.
 class LeafMaker {
