@@ -45,7 +45,8 @@ void takeValues(const BSplineField& field, FieldPoints& points, const Progress& 
         auto value = field.controlPoints->getConstAccessor();
         auto inside = field.shape->getConstAccessor();
         for (int y = 0; y < lattice.size[1]; ++y)
-            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)]; i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i) {
+            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)];
+                 i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i) {
                 const openvdb::Coord p = points.origin.offsetBy(x, y, lattice.z[i]);
                 points.c[i] = value.getValue(p);
                 points.inside[i] = inside.getValue(p);
@@ -90,9 +91,10 @@ void requireRule(const BSplineField& field, const FieldPoints& points, const std
         wrong += here;
     });
     if (wrong > 0)
-        throw InputError(name, fmt::format("the signs of {} lattice points away from its surface do not follow from its "
-                                           "control points, so it cannot be packed; keep it as a pyramid (analyse)",
-                                           wrong.load()));
+        throw InputError(
+            name, fmt::format("the signs of {} lattice points away from its surface do not follow from its "
+                              "control points, so it cannot be packed; keep it as a pyramid (analyse)",
+                              wrong.load()));
 }
 
 void requireSize(const openvdb::CoordBBox& box, const std::string& name) {
@@ -100,9 +102,10 @@ void requireSize(const openvdb::CoordBBox& box, const std::string& name) {
     double count = 1;
     for (int a = 0; a < 3; ++a) count *= static_cast<double>(box.max()[a]) - box.min()[a] + 1;
     if (count > kMostBoxPoints)
-        throw InputError(name, fmt::format("its control points lie in a box of {:.3g} lattice points, and at most {:.3g} "
-                                           "can be packed; crop it, or take larger voxels",
-                                           count, kMostBoxPoints));
+        throw InputError(
+            name, fmt::format("its control points lie in a box of {:.3g} lattice points, and at most {:.3g} "
+                              "can be packed; crop it, or take larger voxels",
+                              count, kMostBoxPoints));
 }
 
 // ---- back to grids
@@ -120,7 +123,8 @@ class Grids {
         putLeaves(field.controlPoints->tree());
         openvdb::FloatTree& tree = field.controlPoints->tree();
         fillTiles(tree, [&] { return [&](const openvdb::Coord& p) { return insideAt(p) ? -K : K; }; });
-        field.shape = Shape::create(std::make_shared<openvdb::BoolTree>(tree, false, openvdb::TopologyCopy()));
+        field.shape =
+            Shape::create(std::make_shared<openvdb::BoolTree>(tree, false, openvdb::TopologyCopy()));
         openvdb::tree::LeafManager<openvdb::BoolTree> leaves(field.shape->tree());
         leaves.foreach ([&](auto& leaf, std::size_t) { setInside(leaf, wordsAt(leaf.origin())); });
         fillTiles(field.shape->tree(), [&] { return [&](const openvdb::Coord& p) { return insideAt(p); }; });
@@ -140,7 +144,8 @@ class Grids {
         LeafWords words{};
         for (int x = 0; x < 8; ++x)
             for (int b = 0; b < 64; ++b)
-                words[static_cast<std::size_t>(x)] |= std::uint64_t{insideAt(origin.offsetBy(x, b / 8, b % 8))} << b;
+                words[static_cast<std::size_t>(x)] |=
+                    std::uint64_t{insideAt(origin.offsetBy(x, b / 8, b % 8))} << b;
         return words;
     }
     void putLeaves(openvdb::FloatTree& tree) const {
@@ -148,12 +153,14 @@ class Grids {
         openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(tree);
         for (int x = 0; x < lattice.size[0]; ++x)
             for (int y = 0; y < lattice.size[1]; ++y)
-                for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)]; i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
+                for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)];
+                     i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
                     accessor.setValue(points_.origin.offsetBy(x, y, lattice.z[i]), points_.c[i]);
         const auto K = static_cast<float>(points_.K);
         openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
         leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
-            for (auto value = leaf.beginValueOff(); value; ++value) value.setValue(insideAt(value.getCoord()) ? -K : K);
+            for (auto value = leaf.beginValueOff(); value; ++value)
+                value.setValue(insideAt(value.getCoord()) ? -K : K);
         });
     }
 

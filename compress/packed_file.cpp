@@ -31,7 +31,8 @@ std::vector<std::int32_t> chunkEndsOf(const Lattice& lattice) {
     const std::size_t wanted = std::max<std::size_t>(1, lattice.pointCount() / kPointsOfChunk);
     std::vector<std::int32_t> ends;
     for (int x = 1; x < lattice.size[0]; ++x)
-        if (lattice.firstOf(x) >= (ends.size() + 1) * lattice.pointCount() / wanted && ends.size() + 1 < wanted)
+        if (lattice.firstOf(x) >= (ends.size() + 1) * lattice.pointCount() / wanted &&
+            ends.size() + 1 < wanted)
             ends.push_back(x);
     ends.push_back(lattice.size[0]);
     return ends;
@@ -102,7 +103,8 @@ void decodeFlips(std::string_view bytes, Flags& signs) {
 
 class Packer {
   public:
-    Packer(const FieldPoints& points, const std::string& name, const PackOptions& options, const Progress& progress)
+    Packer(const FieldPoints& points, const std::string& name, const PackOptions& options,
+           const Progress& progress)
         : points_(points), name_(name), options_(options), progress_(progress) {
         head_.K = points.K;
         head_.origin = points.origin;
@@ -121,9 +123,10 @@ class Packer {
             values = quantise();
         else
             encodeExactly(values);
-        std::vector<Section> sections{{SectionKind::head, bytesOf(head_)},
-                                      {SectionKind::nodes, encodeNodes(points_.nodes)},
-                                      {SectionKind::signs, encodeFlips(signsOfF(points_.lattice, values, head_.K), points_.inside)}};
+        std::vector<Section> sections{
+            {SectionKind::head, bytesOf(head_)},
+            {SectionKind::nodes, encodeNodes(points_.nodes)},
+            {SectionKind::signs, encodeFlips(signsOfF(points_.lattice, values, head_.K), points_.inside)}};
         facts.headBytes = static_cast<std::int64_t>(sections[0].content.size());
         facts.nodeBytes = static_cast<std::int64_t>(sections[1].content.size());
         facts.signBytes = static_cast<std::int64_t>(sections[2].content.size());
@@ -149,17 +152,22 @@ class Packer {
 
     // Returns what the indices stand for.
     std::vector<float> quantise() {
-        const BoundedInput input{points_.lattice, points_.c, points_.inside, static_cast<float>(head_.K), options_.voxelsPerK};
+        const BoundedInput input{points_.lattice, points_.c, points_.inside, static_cast<float>(head_.K),
+                                 options_.voxelsPerK};
         if (reachOf(input) > Quantiser::kMostReach)
-            throw InputError(name_, fmt::format("has control points of {:.4g} voxels, beyond the {} that a bound can be kept "
-                                                "for; pack it without --bound",
-                                                reachOf(input), Quantiser::kMostReach));
+            throw InputError(
+                name_,
+                fmt::format("has control points of {:.4g} voxels, beyond the {} that a bound can be kept "
+                            "for; pack it without --bound",
+                            reachOf(input), Quantiser::kMostReach));
         auto bounded = boundIndices(input, *options_.bound, progress_);
         if (!bounded)
-            throw OperationError(name_, fmt::format("cannot keep every sign and a bound of {:g} voxels with any step down to "
-                                                    "{} voxels; take a larger bound, or pack it without --bound",
-                                                    *options_.bound, Quantiser::kLeastDelta));
-        head_.quantised = Head::Quantised{*options_.bound, bounded->delta, reachOf(input), options_.voxelsPerK};
+            throw OperationError(
+                name_, fmt::format("cannot keep every sign and a bound of {:g} voxels with any step down to "
+                                   "{} voxels; take a larger bound, or pack it without --bound",
+                                   *options_.bound, Quantiser::kLeastDelta));
+        head_.quantised =
+            Head::Quantised{*options_.bound, bounded->delta, reachOf(input), options_.voxelsPerK};
         fitIndexWeights(bounded->indices);
         const Quantised quantised(*head_.quantised, points_.lattice, head_.weights);
         forEachChunk(head_.chunkEnds, progress_, [&](std::size_t i, int begin, int end) {
@@ -177,7 +185,8 @@ class Packer {
             const float t = static_cast<float>(values[i]) / kOneVoxel / 2.5f;
             importance[i] = 1 / (1 + t * t);
         }
-        head_.weights = fitWeights(points_.lattice, values, quantised.quantiser().value(quantised.model().outside), importance);
+        head_.weights = fitWeights(points_.lattice, values,
+                                   quantised.quantiser().value(quantised.model().outside), importance);
     }
 
     const FieldPoints& points_;
@@ -197,19 +206,23 @@ struct Unpacked {
 
 const std::string& contentOf(const std::vector<Section>& sections, std::size_t at, SectionKind kind) {
     if (at >= sections.size() || sections[at].kind != kind)
-        throw std::runtime_error(fmt::format("section {} is not there; the file is truncated or damaged", at));
+        throw std::runtime_error(
+            fmt::format("section {} is not there; the file is truncated or damaged", at));
     return sections[at].content;
 }
 
-void decodeValues(const Head& head, const std::vector<Section>& sections, std::size_t first, FieldPoints& points,
-                  const Progress& progress) {
+void decodeValues(const Head& head, const std::vector<Section>& sections, std::size_t first,
+                  FieldPoints& points, const Progress& progress) {
     const Lattice& lattice = points.lattice;
-    const auto content = [&](std::size_t i) -> const std::string& { return contentOf(sections, first + i, SectionKind::values); };
+    const auto content = [&](std::size_t i) -> const std::string& {
+        return contentOf(sections, first + i, SectionKind::values);
+    };
     points.c.resize(lattice.pointCount());
     if (!head.quantised) {
         const FloatModel model{lattice, head.weights, static_cast<float>(head.K)};
-        forEachChunk(head.chunkEnds, progress,
-                     [&](std::size_t i, int begin, int end) { decodeFloats(model, begin, end, content(i), points.c); });
+        forEachChunk(head.chunkEnds, progress, [&](std::size_t i, int begin, int end) {
+            decodeFloats(model, begin, end, content(i), points.c);
+        });
         return;
     }
     std::vector<std::int32_t> indices(lattice.pointCount());
@@ -225,17 +238,20 @@ Unpacked unpackPoints(std::string_view bytes, double mostPoints, const Progress&
     Unpacked u{headOf(contentOf(sections, 0, SectionKind::head)), {}};
     const Head& head = u.head;
     if (static_cast<double>(head.points) > mostPoints)
-        throw std::runtime_error(fmt::format("holds {} control points, and memory suffices for {:.0f}; see --max-memory",
-                                             head.points, mostPoints));
+        throw std::runtime_error(
+            fmt::format("holds {} control points, and memory suffices for {:.0f}; see --max-memory",
+                        head.points, mostPoints));
     if (sections.size() != 3 + head.chunkEnds.size())
-        throw std::runtime_error(fmt::format("has {} sections, expected {}; it is truncated or damaged", sections.size(),
-                                             3 + head.chunkEnds.size()));
+        throw std::runtime_error(fmt::format("has {} sections, expected {}; it is truncated or damaged",
+                                             sections.size(), 3 + head.chunkEnds.size()));
     u.points.origin = head.origin;
     u.points.K = head.K;
     u.points.transform = head.transform;
-    u.points.nodes = decodeNodes(contentOf(sections, 1, SectionKind::nodes), {head.size[0] - 3, head.size[1] - 3, head.size[2] - 3});
+    u.points.nodes = decodeNodes(contentOf(sections, 1, SectionKind::nodes),
+                                 {head.size[0] - 3, head.size[1] - 3, head.size[2] - 3});
     const BitBox known = pointsOf(u.points.nodes);
-    if (known.count() != head.points) throw std::runtime_error("its nodes are not those of its head; the file is damaged");
+    if (known.count() != head.points)
+        throw std::runtime_error("its nodes are not those of its head; the file is damaged");
     u.points.lattice = Lattice(known);
     decodeValues(head, sections, 3, u.points, progress);
     u.points.inside = signsOfF(u.points.lattice, u.points.c, head.K);
@@ -246,9 +262,10 @@ Unpacked unpackPoints(std::string_view bytes, double mostPoints, const Progress&
 // ---- the promise
 
 void requireSame(const FieldPoints& points, const FieldPoints& decoded, const std::string& name) {
-    const bool same = points.origin == decoded.origin && points.nodes == decoded.nodes && points.inside == decoded.inside &&
-                      points.c.size() == decoded.c.size();
-    if (!same) throw OperationError(name, "did not come back from packing as it went in; nothing was written");
+    const bool same = points.origin == decoded.origin && points.nodes == decoded.nodes &&
+                      points.inside == decoded.inside && points.c.size() == decoded.c.size();
+    if (!same)
+        throw OperationError(name, "did not come back from packing as it went in; nothing was written");
 }
 
 void requirePromise(const FieldPoints& points, const FieldPoints& decoded, const std::string& name,
@@ -259,12 +276,14 @@ void requirePromise(const FieldPoints& points, const FieldPoints& decoded, const
             throw OperationError(name, "did not come back from packing to the bit; nothing was written");
         return;
     }
-    const Change change = changeNear(points.lattice, points.c, decoded.c, static_cast<float>(points.K), points.inside);
+    const Change change =
+        changeNear(points.lattice, points.c, decoded.c, static_cast<float>(points.K), points.inside);
     facts.largest = change.largest * options.voxelsPerK;
     facts.rms = change.rms * options.voxelsPerK;
     if (facts.largest > *options.bound)
-        throw OperationError(name, fmt::format("would change by {:g} voxels, above the bound of {:g}; nothing was written",
-                                               facts.largest, *options.bound));
+        throw OperationError(
+            name, fmt::format("would change by {:g} voxels, above the bound of {:g}; nothing was written",
+                              facts.largest, *options.bound));
 }
 
 PackedField packedFieldOf(const Unpacked& u) {
@@ -275,7 +294,8 @@ PackedField packedFieldOf(const Unpacked& u) {
 
 }  // namespace
 
-PackedBytes pack(const BSplineField& field, const std::string& name, const PackOptions& options, const Progress& progress) {
+PackedBytes pack(const BSplineField& field, const std::string& name, const PackOptions& options,
+                 const Progress& progress) {
     const FieldPoints points = fieldPointsOf(field, name, progress);
     PackedBytes packed;
     packed.bytes = Packer(points, name, options, progress).run(packed.facts);
@@ -288,7 +308,8 @@ PackedBytes pack(const BSplineField& field, const std::string& name, const PackO
     return packed;
 }
 
-PackedField unpack(std::string_view bytes, const std::string& name, double mostPoints, const Progress& progress) {
+PackedField unpack(std::string_view bytes, const std::string& name, double mostPoints,
+                   const Progress& progress) {
     try {
         return packedFieldOf(unpackPoints(bytes, mostPoints, progress));
     } catch (const std::runtime_error& error) {

@@ -28,7 +28,8 @@ struct PackOptions {
 
 struct PackFacts {
     std::int64_t points = 0;
-    std::int64_t bytes = 0, headBytes = 0, nodeBytes = 0, signBytes = 0, valueBytes = 0;  // of the whole file and its parts
+    std::int64_t bytes = 0, headBytes = 0, nodeBytes = 0, signBytes = 0,
+                 valueBytes = 0;  // of the whole file and its parts
     int chunks = 0;
     double delta = 0;             // the quantiser's step at the surface, voxels; 0: lossless
     double largest = 0, rms = 0;  // change of F near the surface, voxels, of what decoding gave
@@ -48,11 +49,13 @@ struct PackedBytes {
 
 // Encodes, decodes, and compares what came back with the promise. name: in messages. Throws InputError for a field that cannot be
 // packed (field_points.h), OperationError where the bound cannot be kept; Cancelled.
-PackedBytes pack(const BSplineField& field, const std::string& name, const PackOptions& options, const Progress& progress = {});
+PackedBytes pack(const BSplineField& field, const std::string& name, const PackOptions& options,
+                 const Progress& progress = {});
 
 // Throws InputError, one line that begins with `name`: no packed file, another version, truncated, damaged.
 // mostPoints: more control points are refused before memory is taken for them.
-PackedField unpack(std::string_view bytes, const std::string& name, double mostPoints, const Progress& progress = {});
+PackedField unpack(std::string_view bytes, const std::string& name, double mostPoints,
+                   const Progress& progress = {});
 
 // Temporary name, then rename. Throws OperationError.
 void writeFile(const std::filesystem::path& path, std::string_view bytes);

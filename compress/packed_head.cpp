@@ -52,8 +52,10 @@ std::optional<Head::Quantised> readQuantised(ByteReader& reader) {
     require(given <= 1);
     if (given == 0) return std::nullopt;
     Head::Quantised q;
-    for (double* value : {&q.bound, &q.delta, &q.reach, &q.voxelsPerK}) require(positive(*value = reader.f64()));
-    require(q.delta >= Quantiser::kLeastDelta && q.delta <= Quantiser::kMostDelta && q.reach <= Quantiser::kMostReach);
+    for (double* value : {&q.bound, &q.delta, &q.reach, &q.voxelsPerK})
+        require(positive(*value = reader.f64()));
+    require(q.delta >= Quantiser::kLeastDelta && q.delta <= Quantiser::kMostDelta &&
+            q.reach <= Quantiser::kMostReach);
     return q;
 }
 

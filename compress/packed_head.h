@@ -23,7 +23,7 @@ struct Head {
     openvdb::Coord origin;
     Size size{};  // of the box of known points
     std::uint64_t points = 0;
-    std::optional<Quantised> quantised;  // nothing: lossless
+    std::optional<Quantised> quantised;   // nothing: lossless
     std::vector<std::int32_t> chunkEnds;  // chunk i has the planes from the end of chunk i - 1 on
     Weights weights;
     openvdb::math::Transform::Ptr transform;

@@ -23,14 +23,16 @@ std::uint32_t checksum(std::uint32_t kind, std::string_view content) {
 
 void requireHead(std::string_view file) {
     if (!file.starts_with(kMagic))
-        throw std::runtime_error("is no packed solid: it does not begin with \"ISOWAVEZ\"; make one with: isowave pack "
-                                 "INPUT -o OUT.iwz");
+        throw std::runtime_error(
+            "is no packed solid: it does not begin with \"ISOWAVEZ\"; make one with: isowave pack "
+            "INPUT -o OUT.iwz");
     ByteReader reader(file.substr(kMagic.size()));
     const std::uint32_t version = reader.u32();
     if (version != kPackedFormatVersion)
-        throw std::runtime_error(fmt::format("is a packed solid of format version {}, expected {}; pack it again with this "
-                                             "version of isowave, or read it with the one that wrote it",
-                                             version, kPackedFormatVersion));
+        throw std::runtime_error(
+            fmt::format("is a packed solid of format version {}, expected {}; pack it again with this "
+                        "version of isowave, or read it with the one that wrote it",
+                        version, kPackedFormatVersion));
 }
 
 }  // namespace
@@ -47,13 +49,15 @@ void ByteWriter::text(std::string_view value) {
 std::uint64_t ByteReader::take(int count) {
     const std::string_view some = bytes(static_cast<std::uint64_t>(count));
     std::uint64_t value = 0;
-    for (int i = 0; i < count; ++i) value |= std::uint64_t{static_cast<std::uint8_t>(some[static_cast<std::size_t>(i)])} << (8 * i);
+    for (int i = 0; i < count; ++i)
+        value |= std::uint64_t{static_cast<std::uint8_t>(some[static_cast<std::size_t>(i)])} << (8 * i);
     return value;
 }
 double ByteReader::f64() { return std::bit_cast<double>(u64()); }
 std::string_view ByteReader::bytes(std::uint64_t count) {
     if (count > bytes_.size())
-        throw std::runtime_error(fmt::format("ends where {} more bytes were expected; it is truncated", count - bytes_.size()));
+        throw std::runtime_error(
+            fmt::format("ends where {} more bytes were expected; it is truncated", count - bytes_.size()));
     const std::string_view some = bytes_.substr(0, count);
     bytes_.remove_prefix(count);
     return some;
@@ -83,8 +87,9 @@ std::vector<Section> sectionsOf(std::string_view file) {
         const std::uint32_t expected = reader.u32();
         const std::string_view content = reader.bytes(length);
         if (checksum(kind, content) != expected)
-            throw std::runtime_error(fmt::format("section {} does not have the checksum that it was written with; {}",
-                                                 sections.size(), kRemedy));
+            throw std::runtime_error(
+                fmt::format("section {} does not have the checksum that it was written with; {}",
+                            sections.size(), kRemedy));
         sections.push_back({static_cast<SectionKind>(kind), std::string(content)});
     }
     return sections;
@@ -93,7 +98,8 @@ std::vector<Section> sectionsOf(std::string_view file) {
 std::string deflated(std::string_view bytes) {
     uLongf size = compressBound(bytes.size());
     std::string out(size, '\0');
-    compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 9);
+    compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+              bytes.size(), 9);
     out.resize(size);
     ByteWriter writer;
     writer.u32(static_cast<std::uint32_t>(bytes.size()));
@@ -106,7 +112,8 @@ std::string inflated(std::string_view bytes) {
     if (size > kMostInflated) throw std::runtime_error(std::string("its head is too large; ") + kRemedy);
     std::string out(size, '\0');
     const std::string_view packed = bytes.substr(4);
-    if (uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(packed.data()), packed.size()) != Z_OK ||
+    if (uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(packed.data()),
+                   packed.size()) != Z_OK ||
         size != out.size())
         throw std::runtime_error(std::string("its head does not unpack; ") + kRemedy);
     return out;

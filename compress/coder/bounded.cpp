@@ -12,9 +12,11 @@
 namespace isowave::compress {
 namespace {
 
-constexpr double kMargin = 1e-5;  // of K: s F has to reach it, so that any order of summation gives the same sign
+constexpr double kMargin =
+    1e-5;  // of K: s F has to reach it, so that any order of summation gives the same sign
 constexpr int kMostPasses = 200;
-constexpr int kMiddlePasses = 100;  // then middles that are still wrong are left: their mesh is compared, too (lod/packing)
+constexpr int kMiddlePasses =
+    100;  // then middles that are still wrong are left: their mesh is compared, too (lod/packing)
 constexpr int kBisections = 9;
 
 template <class Each>
@@ -29,7 +31,8 @@ Flags paritiesOf(const Lattice& lattice) {
     Flags parities(lattice.pointCount());
     for (int x = 0; x < lattice.size[0]; ++x)
         for (int y = 0; y < lattice.size[1]; ++y)
-            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)]; i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
+            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)];
+                 i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
                 parities[i] = static_cast<std::uint8_t>((x & 1) + 2 * (y & 1) + 4 * (lattice.z[i] & 1));
     return parities;
 }
@@ -79,11 +82,13 @@ class Search {
         result.largest = 0;
         for (std::size_t i = 0; i < F.size(); ++i)
             if (near_[i])
-                result.largest = std::max(result.largest, std::abs(static_cast<double>(F[i]) - F_[i]) / in_.K * in_.voxelsPerK);
+                result.largest = std::max(
+                    result.largest, std::abs(static_cast<double>(F[i]) - F_[i]) / in_.K * in_.voxelsPerK);
     }
     // Signs only ever make the error larger, so the search with them begins here.
     double largestWithoutSigns() const {
-        double low = std::max(bound_ / 4, Quantiser::kLeastDelta), high = std::min(bound_ * 4, Quantiser::kMostDelta);
+        double low = std::max(bound_ / 4, Quantiser::kLeastDelta),
+               high = std::min(bound_ * 4, Quantiser::kMostDelta);
         for (int i = 0; i < kBisections && low < high; ++i) {
             const double middle = std::sqrt(low * high);
             const Quantiser quantiser(middle, reach_);
@@ -95,7 +100,9 @@ class Search {
     }
     // Lattice points first; middles where these are right.
     bool keepSigns(const Quantiser& quantiser, std::vector<std::int32_t>& q) const {
-        const auto move = [&](std::size_t i, int s) { q[i] = std::clamp(q[i] + s, -quantiser.most(), quantiser.most()); };
+        const auto move = [&](std::size_t i, int s) {
+            q[i] = std::clamp(q[i] + s, -quantiser.most(), quantiser.most());
+        };
         for (int pass = 0; pass < kMostPasses; ++pass) {
             progress_("quantising", 0);
             const std::vector<float> c = valuesOf(q, quantiser, in_.K, in_.voxelsPerK);
@@ -136,7 +143,8 @@ std::vector<float> valuesOf(const std::vector<std::int32_t>& indices, const Quan
                             double voxelsPerK) {
     const double scale = K / voxelsPerK / kOneVoxel;
     std::vector<float> values(indices.size());
-    forEachPoint(values.size(), [&](std::size_t i) { values[i] = static_cast<float>(quantiser.value(indices[i]) * scale); });
+    forEachPoint(values.size(),
+                 [&](std::size_t i) { values[i] = static_cast<float>(quantiser.value(indices[i]) * scale); });
     return values;
 }
 

@@ -21,6 +21,14 @@ inline std::uint32_t hashed(std::initializer_list<std::int32_t> parts) {
     return static_cast<std::uint32_t>(h >> 8) & ((1u << kContextBits) - 1);
 }
 
+// Of the contexts that a chunk of so many points can fill: small chunks make small tables, which are quick to clear.
+inline int contextBitsFor(std::size_t points) {
+    return std::clamp(static_cast<int>(std::bit_width(points)) - 3, 10, kContextBits);
+}
+inline int placeBitsFor(std::size_t points) {
+    return std::clamp(static_cast<int>(std::bit_width(points)), 12, 20);
+}
+
 // floor(2 log2(n)), n > 0
 inline int twiceLog(std::uint64_t n) {
     const int f = static_cast<int>(std::bit_width(n)) - 1;
@@ -29,7 +37,8 @@ inline int twiceLog(std::uint64_t n) {
 }
 
 // The mean of errors at earlier neighbours, weighted by 1 / (|x| + |y| + |z|)^2: 36, 9, 4 and their sum.
-inline constexpr std::array<std::uint64_t, 16> kErrorWeights{9, 4, 9, 4, 9, 36, 9, 4, 9, 4, 9, 9, 36, 9, 9, 36};
+inline constexpr std::array<std::uint64_t, 16> kErrorWeights{9, 4, 9, 4, 9,  36, 9, 4,
+                                                             9, 4, 9, 9, 36, 9,  9, 36};
 inline constexpr std::uint64_t kErrorWeightSum = 205;
 
 }  // namespace isowave::compress

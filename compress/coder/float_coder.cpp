@@ -15,15 +15,15 @@ namespace {
 
 constexpr int kRepeatModels = 5, kSizeModels = 6, kSignModels = 3;
 constexpr int kCandidates = 5;
-constexpr int kSizeBits = 6;        // 0 .. 33 bits
-constexpr int kTopBits = 2;         // below the leading one, that have a model
-constexpr double kOneK = 1 << 24;   // a value of K as predictions take it
+constexpr int kSizeBits = 6;       // 0 .. 33 bits
+constexpr int kTopBits = 2;        // below the leading one, that have a model
+constexpr double kOneK = 1 << 24;  // a value of K as predictions take it
 
 struct Cell {
     std::int32_t ordered;
-    std::int32_t value;   // in K / 2^24
-    std::uint8_t size;    // bits of the residual; 0 after a repeat
-    std::uint8_t hit;     // 0: no repeat; else 1 + which candidate
+    std::int32_t value;  // in K / 2^24
+    std::uint8_t size;   // bits of the residual; 0 after a repeat
+    std::uint8_t hit;    // 0: no repeat; else 1 + which candidate
     std::uint8_t negative;
     std::uint8_t known;
 };
@@ -31,15 +31,19 @@ struct Cell {
 // Floats as integers of the same order: -0 is -1.
 std::int32_t orderedOf(float value) {
     const auto bits = std::bit_cast<std::int32_t>(value);
-    return bits >= 0 ? bits : static_cast<std::int32_t>(~static_cast<std::uint32_t>(bits)) ^ static_cast<std::int32_t>(0x80000000u);
+    return bits >= 0 ? bits
+                     : static_cast<std::int32_t>(~static_cast<std::uint32_t>(bits)) ^
+                           static_cast<std::int32_t>(0x80000000u);
 }
 float floatOf(std::int32_t ordered) {
-    return std::bit_cast<float>(
-        ordered >= 0 ? ordered : static_cast<std::int32_t>(~static_cast<std::uint32_t>(ordered ^ static_cast<std::int32_t>(0x80000000u))));
+    return std::bit_cast<float>(ordered >= 0 ? ordered
+                                             : static_cast<std::int32_t>(~static_cast<std::uint32_t>(
+                                                   ordered ^ static_cast<std::int32_t>(0x80000000u))));
 }
 
 std::int32_t fixedOf(float value, double scale) {
-    return static_cast<std::int32_t>(std::clamp(std::floor(static_cast<double>(value) * scale + 0.5), -1073741824.0, 1073741824.0));
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(static_cast<double>(value) * scale + 0.5), -1073741824.0, 1073741824.0));
 }
 
 // A value that stood beside the same three neighbours.
@@ -59,18 +63,20 @@ class Besides {
 
 class Coder {
   public:
-    Coder(const FloatModel& model, RangeCoder& coder)
+    Coder(const FloatModel& model, std::size_t points, RangeCoder& coder)
         : model_(model),
           coder_(coder),
           scale_(kOneK / model.K),
           outside_{orderedOf(model.K), fixedOf(model.K, scale_), 24, 0, 0, 0},
           inside_{orderedOf(-model.K), fixedOf(-model.K, scale_), 24, 0, 1, 0},
           window_(model.lattice.size, outside_),
-          repeatMixer_(kRepeatModels, kCandidates + 1),
-          sizeMixer_(kSizeModels, std::size_t{1} << kSizeBits),
-          signMixer_(kSignModels, 1) {
-        for (auto& t : repeats_) t.resize(std::size_t{1} << kContextBits);
-        for (auto& t : sizes_) t.resize(std::size_t{1} << (kContextBits + kSizeBits - 4));
+          repeatMixer_(kCandidates + 1),
+          sizeMixer_(std::size_t{1} << kSizeBits),
+          signMixer_(1),
+          match_(6, placeBitsFor(points)) {
+        const int bits = contextBitsFor(points);
+        for (auto& t : repeats_) t.resize(std::size_t{1} << bits);
+        for (auto& t : sizes_) t.resize(std::size_t{1} << (bits + kSizeBits - 4));
         for (auto& t : signs_) t.resize(std::size_t{1} << 12);
         tops_.resize(std::size_t{64} << kTopBits);
     }
@@ -101,9 +107,9 @@ class Coder {
         std::array<std::int32_t, kCandidates> candidates;
         const int count = collect(candidates);
         lookForRepeats();
-        const bool repeated = repeatBit(0, std::find(candidates.begin(), candidates.begin() + count, wanted) != candidates.begin() + count);
-        if (repeated)
-            cell.hit = static_cast<std::uint8_t>(1 + codeWhich(candidates, count, wanted));
+        const bool repeated = repeatBit(0, std::find(candidates.begin(), candidates.begin() + count,
+                                                     wanted) != candidates.begin() + count);
+        if (repeated) cell.hit = static_cast<std::uint8_t>(1 + codeWhich(candidates, count, wanted));
         if (repeated)
             cell.ordered = candidates[static_cast<std::size_t>(cell.hit - 1)];
         else
@@ -115,7 +121,8 @@ class Coder {
     int collect(std::array<std::int32_t, kCandidates>& candidates) {
         int count = 0;
         const auto add = [&](std::int32_t value) {
-            if (std::find(candidates.begin(), candidates.begin() + count, value) == candidates.begin() + count)
+            if (std::find(candidates.begin(), candidates.begin() + count, value) ==
+                candidates.begin() + count)
                 candidates[static_cast<std::size_t>(count++)] = value;
         };
         if (const auto predicted = match_.predicted()) add(*predicted);
@@ -123,7 +130,8 @@ class Coder {
         for (const Back& o : {kZ, kY, kX}) add(ordered(o));
         return count;
     }
-    std::int32_t codeWhich(const std::array<std::int32_t, kCandidates>& candidates, int count, std::int32_t wanted) {
+    std::int32_t codeWhich(const std::array<std::int32_t, kCandidates>& candidates, int count,
+                           std::int32_t wanted) {
         for (int j = 0; j + 1 < count; ++j)
             if (repeatBit(j + 1, candidates[static_cast<std::size_t>(j)] == wanted)) return j;
         return count - 1;
@@ -135,15 +143,17 @@ class Coder {
         const int copies = same(kZ, {0, 0, -2}) + 2 * same(kY, {0, -1, -1}) + 4 * same(kX, {-1, 0, -1}) +
                            8 * same(kX, {-1, -1, 0}) + 16 * same(kY, {0, -2, 0}) + 32 * same(kX, {-2, 0, 0});
         const int match = matchBucket(match_.length());
-        repeatContexts_ = {hashed({match, at(kZ).hit, 0}), hashed({hits, match > 0, 1}), hashed({copies, known, 2}),
-                           hashed({match, copies, hits, 3}),
-                           hashed({at(kZ).hit, at({0, 0, -2}).hit, at({0, 0, -3}).hit, at({0, -1, 1}).hit, at({-1, 0, 1}).hit, at({-1, 1, 0}).hit})};
+        repeatContexts_ = {hashed({match, at(kZ).hit, 0}), hashed({hits, match > 0, 1}),
+                           hashed({copies, known, 2}), hashed({match, copies, hits, 3}),
+                           hashed({at(kZ).hit, at({0, 0, -2}).hit, at({0, 0, -3}).hit, at({0, -1, 1}).hit,
+                                   at({-1, 0, 1}).hit, at({-1, 1, 0}).hit})};
     }
     bool repeatBit(int which, bool bit) {
-        std::array<Counter*, kRepeatModels> slots;
+        Mixer<kRepeatModels>::Slots slots;
         for (std::size_t m = 0; m < kRepeatModels; ++m)
-            slots[m] = &repeats_[m][(repeatContexts_[m] + static_cast<std::uint32_t>(which) * 0x9E37u) & ((1u << kContextBits) - 1)];
-        return repeatMixer_.code(coder_, slots.data(), static_cast<std::size_t>(which), bit);
+            slots[m] = &repeats_[m][(repeatContexts_[m] + static_cast<std::uint32_t>(which) * 0x9E37u) &
+                                    (repeats_[m].size() - 1)];
+        return repeatMixer_.code(coder_, slots, static_cast<std::size_t>(which), bit);
     }
 
     void codeDifference(Cell& cell, std::int32_t wanted) {
@@ -159,23 +169,27 @@ class Coder {
         cell.size = static_cast<std::uint8_t>(size);
         if (size > 0) cell.negative = codeSign(difference < 0, exponent);
         const std::uint64_t coded = size > 0 ? codeBits(magnitude, size) : 0;
-        const std::int64_t value = cell.negative ? from - static_cast<std::int64_t>(coded) : from + static_cast<std::int64_t>(coded);
+        const std::int64_t value =
+            cell.negative ? from - static_cast<std::int64_t>(coded) : from + static_cast<std::int64_t>(coded);
         if (value < INT32_MIN || value > INT32_MAX) throw std::runtime_error("a value out of range");
         cell.ordered = static_cast<std::int32_t>(value);
     }
 
     int codeSize(int size, int exponent, int kind) {
         const int x = at(kX).size, y = at(kY).size, z = at(kZ).size;
-        const int mean = (2 * (x + y + z) + at({0, -1, -1}).size + at({-1, 0, -1}).size + at({-1, -1, 0}).size) * 2 / 9;
+        const int mean =
+            (2 * (x + y + z) + at({0, -1, -1}).size + at({-1, 0, -1}).size + at({-1, -1, 0}).size) * 2 / 9;
         const std::array<std::uint32_t, kSizeModels> contexts{
-            hashed({mean, exponent, 0}), hashed({z, y, exponent, 1}),  hashed({x, y, z, 2}),
-            hashed({exponent, kind, 3}), hashed({mean, z, kind, 4}), hashed({z, at({0, 0, -2}).size, at({0, 0, -3}).size, 5})};
+            hashed({mean, exponent, 0}), hashed({z, y, exponent, 1}),
+            hashed({x, y, z, 2}),        hashed({exponent, kind, 3}),
+            hashed({mean, z, kind, 4}),  hashed({z, at({0, 0, -2}).size, at({0, 0, -3}).size, 5})};
         int node = 1;
         for (int b = kSizeBits - 1; b >= 0; --b) {
-            std::array<Counter*, kSizeModels> slots;
+            Mixer<kSizeModels>::Slots slots;
             for (std::size_t m = 0; m < kSizeModels; ++m)
-                slots[m] = &sizes_[m][(contexts[m] * 4u + static_cast<std::uint32_t>(node) * 0x9E3779u) & (sizes_[m].size() - 1)];
-            node = 2 * node + sizeMixer_.code(coder_, slots.data(), static_cast<std::size_t>(node), (size >> b) & 1);
+                slots[m] = &sizes_[m][(contexts[m] * 4u + static_cast<std::uint32_t>(node) * 0x9E3779u) &
+                                      (sizes_[m].size() - 1)];
+            node = 2 * node + sizeMixer_.code(coder_, slots, static_cast<std::size_t>(node), (size >> b) & 1);
         }
         const int coded = node - (1 << kSizeBits);
         if (coded > 33) throw std::runtime_error("a value out of range");
@@ -185,17 +199,19 @@ class Coder {
         const int near = at(kX).negative + 2 * at(kY).negative + 4 * at(kZ).negative;
         const std::array<std::size_t, kSignModels> contexts{
             static_cast<std::size_t>(near), static_cast<std::size_t>(8 * exponent + near),
-            static_cast<std::size_t>(near + 8 * at({0, -1, -1}).negative + 16 * at({-1, 0, -1}).negative + 32 * at({-1, -1, 0}).negative)};
-        std::array<Counter*, kSignModels> slots;
+            static_cast<std::size_t>(near + 8 * at({0, -1, -1}).negative + 16 * at({-1, 0, -1}).negative +
+                                     32 * at({-1, -1, 0}).negative)};
+        Mixer<kSignModels>::Slots slots;
         for (std::size_t m = 0; m < kSignModels; ++m) slots[m] = &signs_[m][contexts[m]];
-        return signMixer_.code(coder_, slots.data(), 0, negative);
+        return signMixer_.code(coder_, slots, 0, negative);
     }
     // The bits below the leading one.
     std::uint64_t codeBits(std::uint64_t magnitude, int size) {
         int left = size - 1;
         std::uint64_t result = 1, node = 1;
         for (int t = 0; t < kTopBits && left > 0; ++t) {
-            const bool bit = codeAlone(coder_, tops_[(static_cast<std::size_t>(size) << kTopBits) + node], (magnitude >> --left) & 1);
+            const bool bit = codeAlone(coder_, tops_[(static_cast<std::size_t>(size) << kTopBits) + node],
+                                       (magnitude >> --left) & 1);
             node = 2 * node + bit;
             result = 2 * result + bit;
         }
@@ -207,13 +223,15 @@ class Coder {
     double scale_;
     Cell outside_, inside_;
     Window<Cell> window_;
-    Mixer repeatMixer_, sizeMixer_, signMixer_;
+    Mixer<kRepeatModels> repeatMixer_;
+    Mixer<kSizeModels> sizeMixer_;
+    Mixer<kSignModels> signMixer_;
     std::array<std::vector<Counter>, kRepeatModels> repeats_;
     std::array<std::vector<Counter>, kSizeModels> sizes_;
     std::array<std::vector<Counter>, kSignModels> signs_;
     std::vector<Counter> tops_;
     std::array<std::uint32_t, kRepeatModels> repeatContexts_{};
-    MatchModel match_{6};
+    MatchModel match_;
     Besides besides_;
 };
 
@@ -231,13 +249,14 @@ Weights fitFloatWeights(const Lattice& lattice, const std::vector<float>& values
 
 std::string encodeFloats(const FloatModel& model, int begin, int end, std::vector<float>& values) {
     RangeCoder coder;
-    Coder(model, coder).code(begin, end, values);
+    Coder(model, model.lattice.firstOf(end) - model.lattice.firstOf(begin), coder).code(begin, end, values);
     return coder.finish();
 }
 
-void decodeFloats(const FloatModel& model, int begin, int end, std::string_view bytes, std::vector<float>& values) {
+void decodeFloats(const FloatModel& model, int begin, int end, std::string_view bytes,
+                  std::vector<float>& values) {
     RangeCoder coder(bytes);
-    Coder(model, coder).code(begin, end, values);
+    Coder(model, model.lattice.firstOf(end) - model.lattice.firstOf(begin), coder).code(begin, end, values);
     if (!coder.atEnd()) throw std::runtime_error("the values end before their bytes do");
 }
 

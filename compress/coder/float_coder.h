@@ -25,6 +25,7 @@ Weights fitFloatWeights(const Lattice& lattice, const std::vector<float>& values
 
 // As encodeIndices() and decodeIndices().
 std::string encodeFloats(const FloatModel& model, int begin, int end, std::vector<float>& values);
-void decodeFloats(const FloatModel& model, int begin, int end, std::string_view bytes, std::vector<float>& values);
+void decodeFloats(const FloatModel& model, int begin, int end, std::string_view bytes,
+                  std::vector<float>& values);
 
 }  // namespace isowave::compress

@@ -13,8 +13,8 @@ namespace isowave::compress {
 namespace {
 
 constexpr int kModels = 11;
-constexpr int kSlots = 16;      // counters of a context: a cache line of 64 bytes
-constexpr int kUnaryEnd = 15;   // residuals from here on are escaped
+constexpr int kSlots = 16;     // counters of a context: a cache line of 64 bytes
+constexpr int kUnaryEnd = 15;  // residuals from here on are escaped
 constexpr int kZero = 0, kSign = kUnaryEnd;
 constexpr int kClip = 20;
 constexpr int kErrorLevels = 24;
@@ -40,14 +40,16 @@ int levelOf(std::uint64_t error16) {  // 2 log2(4 e + 1/4) + 4, e = error16 / 16
 
 class Coder {
   public:
-    Coder(const IndexModel& model, RangeCoder& coder)
+    Coder(const IndexModel& model, std::size_t points, RangeCoder& coder)
         : model_(model),
           coder_(coder),
           outside_{model.outside, model.quantiser.value(model.outside), 0, 0},
           inside_{-model.outside, model.quantiser.value(-model.outside), 0, 0},
           window_(model.lattice.size, outside_),
-          mixer_(kModels, std::size_t{kErrorLevels} * 9 * kSlots) {
-        for (auto& table : tables_) table.resize(std::size_t{kSlots} << kContextBits);
+          mixer_(std::size_t{kErrorLevels} * 9 * kSlots),
+          contextMask_((1u << contextBitsFor(points)) - 1),
+          matches_{MatchModel(5, placeBitsFor(points)), MatchModel(12, placeBitsFor(points))} {
+        for (auto& table : tables_) table.resize(std::size_t{kSlots} * (contextMask_ + 1));
     }
 
     void code(int begin, int end, std::vector<std::int32_t>& indices) {
@@ -68,15 +70,9 @@ class Coder {
     int same(const Back& a, const Back& b) const { return q(a) == q(b); }
 
     // Was copying along an axis right at the neighbour on that axis, 1, and at the other two, 2 each?
-    int copiesX() const {
-        return same(kX, {-2, 0, 0}) + 2 * (same(kY, {-1, -1, 0}) + same(kZ, {-1, 0, -1}));
-    }
-    int copiesY() const {
-        return same(kY, {0, -2, 0}) + 2 * (same(kX, {-1, -1, 0}) + same(kZ, {0, -1, -1}));
-    }
-    int copiesZ() const {
-        return same(kZ, {0, 0, -2}) + 2 * (same(kX, {-1, 0, -1}) + same(kY, {0, -1, -1}));
-    }
+    int copiesX() const { return same(kX, {-2, 0, 0}) + 2 * (same(kY, {-1, -1, 0}) + same(kZ, {-1, 0, -1})); }
+    int copiesY() const { return same(kY, {0, -2, 0}) + 2 * (same(kX, {-1, -1, 0}) + same(kZ, {0, -1, -1})); }
+    int copiesZ() const { return same(kZ, {0, 0, -2}) + 2 * (same(kX, {-1, 0, -1}) + same(kY, {0, -1, -1})); }
 
     Guess look() {
         const int kind = window_.at(kX).known + 2 * window_.at(kY).known + 4 * window_.at(kZ).known;
@@ -92,7 +88,9 @@ class Coder {
         g.position = model_.quantiser.position(value);
         g.base = (g.position + 8) >> 4;
         const int e = levelOf(errors / kErrorWeightSum);
-        const int e3 = levelOf(static_cast<std::uint64_t>(window_.at(kX).error + window_.at(kY).error + window_.at(kZ).error) / 3);
+        const int e3 = levelOf(
+            static_cast<std::uint64_t>(window_.at(kX).error + window_.at(kY).error + window_.at(kZ).error) /
+            3);
         const int height = std::min(std::abs(value) / (kOneVoxel / 2), 9);
         const int part = ((g.position + 8) & 15) * 3 >> 4;
         g.contexts[0] = static_cast<std::uint32_t>(8 * e + kind);
@@ -100,8 +98,17 @@ class Coder {
         copies(g);
         columns(g);
         const int longest = matches(g);
+        fetch(g);
         g.set = static_cast<std::size_t>((e * 3 + (copiesZ() >= 5) + (copiesY() >= 5)) * 3 + longest);
         return g;
+    }
+
+    // Counters lie all over the tables: all of them are asked for at once, before the first is needed.
+    void fetch(Guess& g) const {
+        for (std::size_t m = 0; m < kModels; ++m) {
+            g.contexts[m] &= contextMask_;
+            __builtin_prefetch(&tables_[m][static_cast<std::size_t>(g.contexts[m]) * kSlots], 1);
+        }
     }
 
     void copies(Guess& g) const {
@@ -111,7 +118,8 @@ class Coder {
         g.contexts[3] = hashed({y, copiesY(), 0});
         g.contexts[4] = hashed({x, copiesX(), 1});
         g.contexts[5] = hashed({z, y, x});
-        g.contexts[6] = hashed({z, y, x, q({0, -1, -1}) - g.base, q({-1, 0, -1}) - g.base, q({-1, -1, 0}) - g.base});
+        g.contexts[6] =
+            hashed({z, y, x, q({0, -1, -1}) - g.base, q({-1, 0, -1}) - g.base, q({-1, -1, 0}) - g.base});
     }
     void columns(Guess& g) const {
         const std::int32_t z1 = q(kZ), z2 = q({0, 0, -2}), z3 = q({0, 0, -3});
@@ -125,17 +133,19 @@ class Coder {
         for (std::size_t m = 0; m < 2; ++m) {
             const MatchModel& match = matches_[m];
             const auto symbol = match.predicted();
-            g.contexts[9 + m] = hashed({symbol ? std::clamp(*symbol - g.base, -kClip, kClip) : 0, matchBucket(match.length())});
+            g.contexts[9 + m] = hashed(
+                {symbol ? std::clamp(*symbol - g.base, -kClip, kClip) : 0, matchBucket(match.length())});
             longest = match.length();
         }
         return longest == 0 ? 0 : longest < 32 ? 1 : 2;
     }
 
     bool bit(const Guess& g, int slot, bool value) {
-        std::array<Counter*, kModels> slots;
+        Mixer<kModels>::Slots slots;
         for (std::size_t m = 0; m < kModels; ++m)
-            slots[m] = &tables_[m][static_cast<std::size_t>(g.contexts[m]) * kSlots + static_cast<std::size_t>(slot)];
-        return mixer_.code(coder_, slots.data(), g.set * kSlots + static_cast<std::size_t>(slot), value);
+            slots[m] = &tables_[m][static_cast<std::size_t>(g.contexts[m]) * kSlots +
+                                   static_cast<std::size_t>(slot)];
+        return mixer_.code(coder_, slots, g.set * kSlots + static_cast<std::size_t>(slot), value);
     }
     std::int32_t codeResidual(const Guess& g, std::int32_t residual) {
         const std::int32_t size = std::abs(residual);
@@ -160,24 +170,25 @@ class Coder {
     RangeCoder& coder_;
     Cell outside_, inside_;
     Window<Cell> window_;
-    Mixer mixer_;
+    Mixer<kModels> mixer_;
+    std::uint32_t contextMask_;
     std::array<std::vector<Counter>, kModels> tables_;
     std::array<Counter, 32> escapes_;
-    std::array<MatchModel, 2> matches_{MatchModel(5), MatchModel(12)};
+    std::array<MatchModel, 2> matches_;
 };
 
 }  // namespace
 
 std::string encodeIndices(const IndexModel& model, int begin, int end, std::vector<std::int32_t>& indices) {
     RangeCoder coder;
-    Coder(model, coder).code(begin, end, indices);
+    Coder(model, model.lattice.firstOf(end) - model.lattice.firstOf(begin), coder).code(begin, end, indices);
     return coder.finish();
 }
 
 void decodeIndices(const IndexModel& model, int begin, int end, std::string_view bytes,
                    std::vector<std::int32_t>& indices) {
     RangeCoder coder(bytes);
-    Coder(model, coder).code(begin, end, indices);
+    Coder(model, model.lattice.firstOf(end) - model.lattice.firstOf(begin), coder).code(begin, end, indices);
     if (!coder.atEnd()) throw std::runtime_error("the values end before their bytes do");
 }
 

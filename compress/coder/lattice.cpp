@@ -18,7 +18,8 @@ void orShifted(const std::uint64_t* from, std::uint64_t* to, std::size_t words, 
     }
 }
 
-void andShifted(const std::uint64_t* from, std::size_t fromWords, std::uint64_t* to, std::size_t words, int shift) {
+void andShifted(const std::uint64_t* from, std::size_t fromWords, std::uint64_t* to, std::size_t words,
+                int shift) {
     for (std::size_t w = 0; w < words; ++w) {
         const std::uint64_t next = w + 1 < fromWords ? from[w + 1] : 0;
         to[w] &= shift == 0 ? from[w] : (from[w] >> shift) | (next << (64 - shift));
@@ -33,8 +34,9 @@ BitBox::BitBox(const Size& size)
       bits_(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * words_, 0) {}
 
 std::size_t BitBox::count() const {
-    return std::transform_reduce(bits_.begin(), bits_.end(), std::size_t{0}, std::plus<>(),
-                                 [](std::uint64_t word) { return static_cast<std::size_t>(std::popcount(word)); });
+    return std::transform_reduce(
+        bits_.begin(), bits_.end(), std::size_t{0}, std::plus<>(),
+        [](std::uint64_t word) { return static_cast<std::size_t>(std::popcount(word)); });
 }
 
 BitBox nodesOf(const BitBox& known) {

@@ -28,7 +28,9 @@ class BitBox {
 
   private:
     std::size_t at(int x, int y) const {
-        return (static_cast<std::size_t>(x) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) * words_;
+        return (static_cast<std::size_t>(x) * static_cast<std::size_t>(size_[1]) +
+                static_cast<std::size_t>(y)) *
+               words_;
     }
     Size size_;
     std::size_t words_;
@@ -37,8 +39,8 @@ class BitBox {
 
 // Node i has the 64 control points i .. i + 3 on each axis (positions in boxes, whose low corners coincide). A box of
 // control points has 3 more points on each axis than that of its nodes.
-BitBox nodesOf(const BitBox& known);    // the nodes all of whose control points are known
-BitBox pointsOf(const BitBox& nodes);   // the control points of nodes
+BitBox nodesOf(const BitBox& known);   // the nodes all of whose control points are known
+BitBox pointsOf(const BitBox& nodes);  // the control points of nodes
 
 // The known points, row by row.
 struct Lattice {

@@ -28,7 +28,8 @@ class Planes {
         std::vector<float>& plane = planes_[static_cast<std::size_t>(x + 3) % 3];
         std::fill(plane.begin(), plane.end(), K_);
         if (x < 0 || x >= lattice_.size[0]) return;
-        for (int y = 0; y < lattice_.size[1]; ++y) loadRow(x, y, plane.data() + (static_cast<std::size_t>(y) + 1) * stride_ + 1);
+        for (int y = 0; y < lattice_.size[1]; ++y)
+            loadRow(x, y, plane.data() + (static_cast<std::size_t>(y) + 1) * stride_ + 1);
     }
     // a: the weight of both neighbours along an axis; b: that of the point itself
     double sum(int x, int y, int z, double a, double b) const {
@@ -62,42 +63,49 @@ class Planes {
 
 // take(point, sum) at every known point.
 template <class Take>
-void filter(const Lattice& lattice, const std::vector<float>& c, float K, const Flags* inside, double a, double b,
-            const Take& take) {
+void filter(const Lattice& lattice, const std::vector<float>& c, float K, const Flags* inside, double a,
+            double b, const Take& take) {
     constexpr int kSlab = 16;  // planes: two more are loaded for each slab
-    tbb::parallel_for(tbb::blocked_range<int>(0, lattice.size[0], kSlab), [&](const tbb::blocked_range<int>& slab) {
-        Planes planes(lattice, c, K, inside);
-        planes.load(slab.begin() - 1);
-        planes.load(slab.begin());
-        for (int x = slab.begin(); x < slab.end(); ++x) {
-            planes.load(x + 1);
-            for (int y = 0; y < lattice.size[1]; ++y)
-                for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)]; i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
-                    take(i, planes.sum(x, y, lattice.z[i], a, b));
-        }
-    });
+    tbb::parallel_for(tbb::blocked_range<int>(0, lattice.size[0], kSlab),
+                      [&](const tbb::blocked_range<int>& slab) {
+                          Planes planes(lattice, c, K, inside);
+                          planes.load(slab.begin() - 1);
+                          planes.load(slab.begin());
+                          for (int x = slab.begin(); x < slab.end(); ++x) {
+                              planes.load(x + 1);
+                              for (int y = 0; y < lattice.size[1]; ++y)
+                                  for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)];
+                                       i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
+                                      take(i, planes.sum(x, y, lattice.z[i], a, b));
+                          }
+                      });
 }
 
 }  // namespace
 
-std::vector<float> latticeValues(const Lattice& lattice, const std::vector<float>& c, float K, const Flags* inside) {
+std::vector<float> latticeValues(const Lattice& lattice, const std::vector<float>& c, float K,
+                                 const Flags* inside) {
     std::vector<float> F(lattice.pointCount());
-    filter(lattice, c, K, inside, 1, 4, [&](std::size_t i, double sum) { F[i] = static_cast<float>(sum / 216); });
+    filter(lattice, c, K, inside, 1, 4,
+           [&](std::size_t i, double sum) { F[i] = static_cast<float>(sum / 216); });
     return F;
 }
 
 Flags nearSurface(const Lattice& lattice, const Flags& inside) {
     std::vector<float> sign(inside.size());
-    std::transform(inside.begin(), inside.end(), sign.begin(), [](std::uint8_t in) { return in ? -1.0f : 1.0f; });
+    std::transform(inside.begin(), inside.end(), sign.begin(),
+                   [](std::uint8_t in) { return in ? -1.0f : 1.0f; });
     Flags near(inside.size());
-    filter(lattice, sign, 1, nullptr, 1, 1, [&](std::size_t i, double sum) { near[i] = std::abs(sum) < 26.5; });
+    filter(lattice, sign, 1, nullptr, 1, 1,
+           [&](std::size_t i, double sum) { near[i] = std::abs(sum) < 26.5; });
     return near;
 }
 
-Change changeNear(const Lattice& lattice, const std::vector<float>& before, const std::vector<float>& after, float K,
-                  const Flags& inside) {
+Change changeNear(const Lattice& lattice, const std::vector<float>& before, const std::vector<float>& after,
+                  float K, const Flags& inside) {
     const Flags near = nearSurface(lattice, inside);
-    const std::vector<float> F = latticeValues(lattice, before, K, &inside), G = latticeValues(lattice, after, K, &inside);
+    const std::vector<float> F = latticeValues(lattice, before, K, &inside),
+                             G = latticeValues(lattice, after, K, &inside);
     Change change;
     double squares = 0, count = 0;
     for (std::size_t i = 0; i < F.size(); ++i) {

@@ -16,7 +16,8 @@ namespace isowave::compress {
 using Flags = std::vector<std::uint8_t>;  // one for each known point
 
 // c: of the known points. inside: the signs that gaps take from the point before; null: those of c itself.
-std::vector<float> latticeValues(const Lattice& lattice, const std::vector<float>& c, float K, const Flags* inside);
+std::vector<float> latticeValues(const Lattice& lattice, const std::vector<float>& c, float K,
+                                 const Flags* inside);
 
 // The corners of nodes that the surface passes: known points one of whose 26 neighbours has the other sign.
 Flags nearSurface(const Lattice& lattice, const Flags& inside);
@@ -25,8 +26,8 @@ Flags nearSurface(const Lattice& lattice, const Flags& inside);
 struct Change {
     double largest = 0, rms = 0;
 };
-Change changeNear(const Lattice& lattice, const std::vector<float>& before, const std::vector<float>& after, float K,
-                  const Flags& inside);
+Change changeNear(const Lattice& lattice, const std::vector<float>& before, const std::vector<float>& after,
+                  float K, const Flags& inside);
 
 // The median length of F's gradient there, by a lattice step; of differences with the earlier neighbour on each axis.
 double medianSlope(const Lattice& lattice, const std::vector<float>& c, float K, const Flags& inside);

@@ -16,9 +16,11 @@ Logistic::Logistic() {
             static_cast<std::uint16_t>(65536 * e / (1 + e) + 0.5);
     }
     int x = -kStretchLimit;
-    for (std::uint32_t p = 0; p < stretch_.size(); ++p) {
+    for (std::uint32_t p = 0; p < 4096; ++p) {
         while (x < kStretchLimit && squash(x) < 16 * p + 8) ++x;
-        stretch_[p] = static_cast<std::int16_t>(x);
+        for (int n = 0; n < 4; ++n)
+            stretch_[static_cast<std::size_t>(n)][p] = static_cast<std::int16_t>(x * (2 * n + 1) / 8);
+        stretch_[4][p] = static_cast<std::int16_t>(x);
     }
 }
 

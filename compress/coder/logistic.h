@@ -23,13 +23,14 @@ class Logistic {
         x = x < -kStretchLimit ? -kStretchLimit : x > kStretchLimit ? kStretchLimit : x;
         return squash_[static_cast<std::size_t>(x + kStretchLimit)];
     }
-    // p: probability in 1/4096, 0 <= p < 4096, taken at the middle of its bin.
-    int stretch(std::uint32_t p) const { return stretch_[p]; }
+    // p: probability in 1/4096, 0 <= p < 4096, taken at the middle of its bin. A model that has seen n < 4 bits counts for
+    // less: (n + 1/2) / 4.
+    int stretch(std::uint32_t p, std::uint32_t n) const { return stretch_[n < 4 ? n : 4][p]; }
 
   private:
     Logistic();
     std::array<std::uint16_t, 2 * kStretchLimit + 1> squash_{};
-    std::array<std::int16_t, 4096> stretch_{};
+    std::array<std::array<std::int16_t, 4096>, 5> stretch_{};
 };
 
 }  // namespace isowave::compress

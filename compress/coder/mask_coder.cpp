@@ -17,19 +17,60 @@ using Template = std::array<Offset, 16>;
 
 // Found by trial on solids of four kinds: near bits first; the second reaches across thin walls, the third looks far.
 constexpr std::array<Template, 3> kTemplates{{
-    {{{0, 0, -1}, {0, 0, -2}, {0, 0, -3}, {0, -1, 0}, {0, -1, 1}, {0, -1, -1}, {0, -2, 0}, {-1, 0, 0},
-      {-1, 0, 1}, {-1, 0, -1}, {-1, 1, 0}, {-1, -1, 0}, {-2, 0, 0}, {0, -1, 2}, {-1, 0, 2}, {-1, 1, 1}}},
-    {{{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {0, -1, 1}, {-1, 0, 1}, {-1, 1, 0}, {-1, 1, 1}, {-1, 1, -1},
-      {-1, -1, 1}, {0, -2, 1}, {-2, 0, 1}, {-2, 1, 0}, {-3, 0, 0}, {0, -3, 0}, {0, 0, -4}, {-2, 0, 0}}},
-    {{{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {0, -1, 1}, {-1, 0, 1}, {-1, 1, 0}, {-1, 0, 3}, {0, -1, 3},
-      {-1, 2, 0}, {-1, 3, 0}, {0, -2, 2}, {-2, 0, 2}, {-2, 2, 0}, {-1, 2, 2}, {-2, 0, 0}, {0, -2, 0}}},
+    {{{0, 0, -1},
+      {0, 0, -2},
+      {0, 0, -3},
+      {0, -1, 0},
+      {0, -1, 1},
+      {0, -1, -1},
+      {0, -2, 0},
+      {-1, 0, 0},
+      {-1, 0, 1},
+      {-1, 0, -1},
+      {-1, 1, 0},
+      {-1, -1, 0},
+      {-2, 0, 0},
+      {0, -1, 2},
+      {-1, 0, 2},
+      {-1, 1, 1}}},
+    {{{0, 0, -1},
+      {0, -1, 0},
+      {-1, 0, 0},
+      {0, -1, 1},
+      {-1, 0, 1},
+      {-1, 1, 0},
+      {-1, 1, 1},
+      {-1, 1, -1},
+      {-1, -1, 1},
+      {0, -2, 1},
+      {-2, 0, 1},
+      {-2, 1, 0},
+      {-3, 0, 0},
+      {0, -3, 0},
+      {0, 0, -4},
+      {-2, 0, 0}}},
+    {{{0, 0, -1},
+      {0, -1, 0},
+      {-1, 0, 0},
+      {0, -1, 1},
+      {-1, 0, 1},
+      {-1, 1, 0},
+      {-1, 0, 3},
+      {0, -1, 3},
+      {-1, 2, 0},
+      {-1, 3, 0},
+      {0, -2, 2},
+      {-2, 0, 2},
+      {-2, 2, 0},
+      {-1, 2, 2},
+      {-2, 0, 0},
+      {0, -2, 0}}},
 }};
 
 // Which blocks have a node.
 class Blocks {
   public:
-    explicit Blocks(const Size& size)
-        : box_({blocksOf(size[0]), blocksOf(size[1]), blocksOf(size[2])}) {}
+    explicit Blocks(const Size& size) : box_({blocksOf(size[0]), blocksOf(size[1]), blocksOf(size[2])}) {}
     static int blocksOf(int n) { return (n + kBlock - 1) / kBlock; }
 
     void mark(const BitBox& nodes) {
@@ -74,7 +115,8 @@ class Planes {
         std::fill(first, first + static_cast<std::ptrdiff_t>(plane_), std::uint8_t{0});
     }
     std::size_t at(int x, int y, int z) const {
-        return start(x) + static_cast<std::size_t>(y + kMargin) * stride_ + static_cast<std::size_t>(z + kMargin);
+        return start(x) + static_cast<std::size_t>(y + kMargin) * stride_ +
+               static_cast<std::size_t>(z + kMargin);
     }
     std::uint32_t get(std::size_t place) const { return bytes_[place]; }
     void set(std::size_t place) { bytes_[place] = 1; }
@@ -88,18 +130,21 @@ class Planes {
 
 class NodeModel {
   public:
-    explicit NodeModel(const Size& size) : planes_(size), mixer_(5, 1), matches_{MatchModel(16), MatchModel(40)} {
+    explicit NodeModel(const Size& size)
+        : planes_(size), mixer_(1), matches_{MatchModel(16), MatchModel(40)} {
         for (auto& t : tables_) t.resize(std::size_t{1} << 16);
         for (auto& t : matchTables_) t.resize(16 * 8 * 2);
     }
     void begin(int x) { planes_.begin(x); }
     bool code(RangeCoder& coder, int x, int y, int z, bool bit) {
-        std::array<Counter*, 5> slots;
+        Mixer<5>::Slots slots;
         for (std::size_t t = 0; t < 3; ++t) slots[t] = &tables_[t][contextOf(kTemplates[t], x, y, z)];
-        const std::size_t near = planes_.get(planes_.at(x, y, z - 1)) + 2 * planes_.get(planes_.at(x, y - 1, z)) +
+        const std::size_t near = planes_.get(planes_.at(x, y, z - 1)) +
+                                 2 * planes_.get(planes_.at(x, y - 1, z)) +
                                  4 * planes_.get(planes_.at(x - 1, y, z));
-        for (std::size_t m = 0; m < 2; ++m) slots[3 + m] = &matchTables_[m][contextOf(matches_[m]) * 8 + near];
-        bit = mixer_.code(coder, slots.data(), 0, bit);
+        for (std::size_t m = 0; m < 2; ++m)
+            slots[3 + m] = &matchTables_[m][contextOf(matches_[m]) * 8 + near];
+        bit = mixer_.code(coder, slots, 0, bit);
         for (MatchModel& match : matches_) match.add(bit);
         if (bit) planes_.set(planes_.at(x, y, z));
         return bit;
@@ -108,7 +153,8 @@ class NodeModel {
   private:
     std::size_t contextOf(const Template& offsets, int x, int y, int z) const {
         std::size_t context = 0;
-        for (const Offset& o : offsets) context = 2 * context + planes_.get(planes_.at(x + o[0], y + o[1], z + o[2]));
+        for (const Offset& o : offsets)
+            context = 2 * context + planes_.get(planes_.at(x + o[0], y + o[1], z + o[2]));
         return context;
     }
     static std::size_t contextOf(const MatchModel& match) {
@@ -116,7 +162,7 @@ class NodeModel {
         return symbol ? static_cast<std::size_t>(2 * matchBucket(match.length()) + *symbol) : 0;
     }
     Planes planes_;
-    Mixer mixer_;
+    Mixer<5> mixer_;
     std::array<MatchModel, 2> matches_;
     std::array<std::vector<Counter>, 3> tables_;
     std::array<std::vector<Counter>, 2> matchTables_;

@@ -39,7 +39,8 @@ MiddleSigns::MiddleSigns(const Lattice& lattice, const Flags& inside, const std:
     : lattice_(lattice), inside_(inside) {
     for (int x = 0; x + 1 < lattice.size[0]; ++x)
         for (int y = 0; y + 1 < lattice.size[1]; ++y)
-            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)]; i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
+            for (std::size_t i = lattice.rowStart[lattice.rowOf(x, y)];
+                 i < lattice.rowStart[lattice.rowOf(x, y) + 1]; ++i)
                 addPlacesOf(x, y, lattice.z[i], c);
 }
 
@@ -50,15 +51,18 @@ std::size_t MiddleSigns::pointAt(int x, int y, int z) const {
     const auto begin = lattice_.z.begin() + static_cast<std::ptrdiff_t>(lattice_.rowStart[row]),
                end = lattice_.z.begin() + static_cast<std::ptrdiff_t>(lattice_.rowStart[row + 1]);
     const auto found = std::lower_bound(begin, end, z);
-    return found == end || *found != z ? lattice_.pointCount() : static_cast<std::size_t>(found - lattice_.z.begin());
+    return found == end || *found != z ? lattice_.pointCount()
+                                       : static_cast<std::size_t>(found - lattice_.z.begin());
 }
 
 void MiddleSigns::addPlacesOf(int x, int y, int z, const std::vector<float>& c) {
     unsigned pattern = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
         const std::size_t point =
-            pointAt(x + static_cast<int>(corner & 1), y + static_cast<int>(corner >> 1 & 1), z + static_cast<int>(corner >> 2));
-        if (point == lattice_.pointCount()) return;  // a cell that the surface passes has all its corners known
+            pointAt(x + static_cast<int>(corner & 1), y + static_cast<int>(corner >> 1 & 1),
+                    z + static_cast<int>(corner >> 2));
+        if (point == lattice_.pointCount())
+            return;  // a cell that the surface passes has all its corners known
         pattern |= static_cast<unsigned>(inside_[point] != 0) << corner;
     }
     if (pattern == 0 || pattern == 255) return;
@@ -67,7 +71,8 @@ void MiddleSigns::addPlacesOf(int x, int y, int z, const std::vector<float>& c) 
     if (!joined(pattern) || !joined(pattern ^ 255u)) add({x, y, z}, {true, true, true}, c);
 }
 
-void MiddleSigns::add(const std::array<int, 3>& low, const std::array<bool, 3>& half, const std::vector<float>& c) {
+void MiddleSigns::add(const std::array<int, 3>& low, const std::array<bool, 3>& half,
+                      const std::vector<float>& c) {
     Place place{low, half, false};
     place.inside = valueAt(place, c) < 0;
     places_.push_back(place);
@@ -88,8 +93,11 @@ double MiddleSigns::valueAt(const Place& place, const std::vector<float>& c) con
     for (int x = 0; x < 4; ++x)
         for (int y = 0; y < 4; ++y)
             for (int z = 0; z < 4; ++z) {
-                const double w = wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)] * wz[static_cast<std::size_t>(z)];
-                const std::size_t point = w == 0 ? c.size() : pointAt(place.low[0] + x - 1, place.low[1] + y - 1, place.low[2] + z - 1);
+                const double w = wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)] *
+                                 wz[static_cast<std::size_t>(z)];
+                const std::size_t point =
+                    w == 0 ? c.size()
+                           : pointAt(place.low[0] + x - 1, place.low[1] + y - 1, place.low[2] + z - 1);
                 if (point < c.size()) sum += w * static_cast<double>(c[point]);
             }
     return sum;

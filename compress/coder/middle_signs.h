@@ -36,7 +36,7 @@ class MiddleSigns {
 
   private:
     struct Place {
-        std::array<int, 3> low;   // of its corners
+        std::array<int, 3> low;    // of its corners
         std::array<bool, 3> half;  // on which axes it lies between two points
         bool inside;
     };

@@ -6,9 +6,9 @@
 namespace isowave::compress {
 namespace {
 
-constexpr double kT = 2.5;          // voxels
-constexpr double kStraight = 1.2;   // u / T
-constexpr int kStartShift = 10;     // 65536 / 64
+constexpr double kT = 2.5;         // voxels
+constexpr double kStraight = 1.2;  // u / T
+constexpr int kStartShift = 10;    // 65536 / 64
 
 double tangent(double x) { return x * (15 - x * x) / (15 - 6 * x * x); }
 
@@ -27,7 +27,8 @@ Quantiser::Quantiser(double delta, double reach) {
     std::vector<std::int32_t> up{0};
     const double limit = reach * kOneVoxel;
     while (up.back() < limit)
-        up.push_back(static_cast<std::int32_t>(growth(static_cast<double>(up.size()) * delta) * kOneVoxel + 0.5));
+        up.push_back(
+            static_cast<std::int32_t>(growth(static_cast<double>(up.size()) * delta) * kOneVoxel + 0.5));
     most_ = static_cast<std::int32_t>(up.size()) - 1;
     for (std::size_t i = up.size(); i-- > 1;) values_.push_back(-up[i]);
     values_.insert(values_.end(), up.begin(), up.end());
@@ -41,7 +42,8 @@ Quantiser::Quantiser(double delta, double reach) {
 std::int32_t Quantiser::position(std::int32_t v) const {
     if (v >= values_.back()) return 16 * most_;
     if (v <= values_.front()) return -16 * most_;
-    auto at = static_cast<std::size_t>(starts_[static_cast<std::size_t>((v - values_.front()) >> kStartShift)]);
+    auto at =
+        static_cast<std::size_t>(starts_[static_cast<std::size_t>((v - values_.front()) >> kStartShift)]);
     while (values_[at + 1] <= v) ++at;
     const std::int64_t gap = values_[at + 1] - values_[at];
     const auto part = static_cast<std::int32_t>(16 * (static_cast<std::int64_t>(v) - values_[at]) / gap);

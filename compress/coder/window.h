@@ -28,13 +28,15 @@ class Window {
           cells_(3 * static_cast<std::size_t>(plane_), outside) {}
 
     void beginPlane(int x) {
-        for (int back = 0; back < 3; ++back) base_[static_cast<std::size_t>(back)] = (x + 3 - back) % 3 * plane_;
+        for (int back = 0; back < 3; ++back)
+            base_[static_cast<std::size_t>(back)] = (x + 3 - back) % 3 * plane_;
         std::fill_n(cells_.begin() + base_[0], plane_, outside_);
     }
     void moveTo(int y, int z) { here_ = (y + kLow) * stride_ + z + kLow; }
     Cell& here() { return cells_[static_cast<std::size_t>(base_[0] + here_)]; }
     const Cell& at(const Back& o) const {
-        return cells_[static_cast<std::size_t>(base_[static_cast<std::size_t>(-o.x)] + here_ + o.y * stride_ + o.z)];
+        return cells_[static_cast<std::size_t>(base_[static_cast<std::size_t>(-o.x)] + here_ + o.y * stride_ +
+                                               o.z)];
     }
     // The points begin .. end - 1 of row y.
     void fill(int y, int begin, int end, const Cell& cell) {

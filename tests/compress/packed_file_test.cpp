@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "compress/sections.h"
 #include "isowave/error.h"
 #include "polygonize/polygonize.h"
 #include "temp_folder.h"
@@ -126,6 +127,27 @@ TEST(PackedFile, RefusesEveryTruncationAndEveryChangedByte) {
         damaged[at] = static_cast<char>(damaged[at] ^ static_cast<char>(1 + random() % 255));
         EXPECT_NE(messageOf(damaged), "") << at;
     }
+}
+
+// What no checksum can find: sections whose bytes are others, with checksums that are right.
+TEST(PackedFile, RefusesOrReadsOtherBytesUnderRightChecksums) {
+    const std::vector<Section> whole = sectionsOf(pack(ball(), "ball", {.bound = 0.5}).bytes);
+    std::mt19937 random(2);
+    int refused = 0, tried = 0;
+    for (int run = 0; run < 500; ++run) {
+        std::vector<Section> sections = whole;
+        std::string& content = sections[random() % sections.size()].content;
+        if (content.empty()) continue;
+        ++tried;
+        if (run % 5 == 0) content.resize(random() % content.size());
+        for (std::size_t left = 1 + random() % 3; left > 0 && !content.empty(); --left)
+            content[random() % content.size()] = static_cast<char>(random());
+        const std::string message = messageOf(fileOf(sections));
+        refused += !message.empty();
+        EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
+    }
+    EXPECT_GT(tried, 300);
+    EXPECT_GT(refused, tried * 4 / 5);  // of the rest, raw bits of values are others
 }
 
 TEST(PackedFile, SaysWhatIsWrong) {
