@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include "hold/plug.h"
 #include "hold/topology_candidates.h"
@@ -47,12 +48,27 @@ struct Tried {
     std::vector<OptionKey> useless;
 };
 
-// How an option is tried: gently first.
+// How an option is tried: gently first. A ball around the plan's middle is what the spline can always bend to; it takes more volume,
+// and is tried where few are left that nothing else removes.
 struct Manner {
     double margin;
-    double thicker;  // control points
+    double thicker;   // control points
+    double ball = 0;  // radius, control points
 };
 constexpr Manner kManners[] = {{0.25, 0}, {0.25, 1}, {1.0, 1}};
+constexpr Manner kBalls[] = {{0.25, 1, 1.0}, {0.25, 1, 1.75}, {0.25, 1, 2.5}};
+constexpr std::int64_t kFewForBalls = 4;
+
+void addBall(EditPlan& plan, double radius) {  // in lattice steps
+    openvdb::Vec3d middle(0);
+    for (const Coord& c : plan.points) middle += c.asVec3d() / static_cast<double>(plan.points.size());
+    const std::set<Coord> own(plan.points.begin(), plan.points.end());
+    CoordBBox around(Coord::floor(middle - openvdb::Vec3d(radius)),
+                     Coord::ceil(middle + openvdb::Vec3d(radius)));
+    for (auto at = around.begin(); at; ++at)
+        if (((*at).asVec3d() - middle).length() <= radius && !own.count(*at)) plan.points.push_back(*at);
+    plan.whole = true;
+}
 
 // Options are tried while their estimate is below this multiple of the cheapest one's that works.
 constexpr double kWorthTrying = 4;
@@ -74,7 +90,7 @@ class Limiter {
         bool goesOn = !limits_.allow(result_.after);
         while (goesOn) {
             progress_("limiting the topology", 0);
-            goesOn = round() && !limits_.allow(result_.after);
+            goesOn = (round() || goesOnWithBalls()) && !limits_.allow(result_.after);
         }
         result_.met = limits_.allow(result_.after);
         if (!result_.met) result_.why = why();
@@ -115,6 +131,17 @@ class Limiter {
             most *= kSpare;
         }
         return result_.edits.size() > before;
+    }
+
+    // All that was in vain is tried once more, as balls.
+    bool goesOnWithBalls() {
+        std::int64_t left = 0;
+        for (const What what : kOrder) left += tooMany(what);
+        if (manners_.data() == kBalls || left > kFewForBalls) return false;
+        manners_ = kBalls;
+        useless_.clear();
+        known_.clear();
+        return true;
     }
 
     // ---- try
@@ -174,9 +201,13 @@ class Limiter {
         return tried;
     }
     std::optional<Choice> tryOption(const EditOption& option) const {
-        for (const Manner& manner : kManners) {
+        for (const Manner& manner : manners_) {
             EditPlan plan = option.plan;
             plan.margin = manner.margin;
+            if (manner.ball > 0) {
+                if (plan.points.empty()) break;
+                addBall(plan, manner.ball * refine_);
+            }
             plan.thicker = static_cast<int>(manner.thicker * refine_);
             LocalEdit change = tryEdit(field_, refine_, plan);
             if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
@@ -267,6 +298,7 @@ class Limiter {
     SolidLimits limits_;
     double smallest_;
     const Progress& progress_;
+    std::span<const Manner> manners_ = kManners;
     std::set<OptionKey> useless_;  // on the whole mesh or on its surroundings alone
     struct Known {
         CoordBBox reads;

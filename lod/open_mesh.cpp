@@ -177,11 +177,15 @@ std::int64_t missed(const Solid::State& solid, int refine, const Progress& progr
            std::abs(counts.cavities - *solid.input.cavities);
 }
 
-// Whether rows between lattice points have left what the input does not have: where they contradict each other (a pocket
+// A field of more control points is looked at as it is meshed: finer, its mesh would take gigabytes.
+constexpr std::int64_t kMostForFiner = 2'000'000;
+bool isLarge(const Solid::State& solid) { return solid.field->controlPointCount() > kMostForFiner; }
+
+// How much rows between lattice points have left that the input does not have: where they contradict each other (a pocket
 // whose walls come nearer and nearer) they may tear what was whole without them.
-bool missesBetween(const Solid::State& solid, const Progress& progress) {
-    return solid.fit->walls && solid.fit->walls->between > 0 && solid.input.parts &&
-           missed(solid, 2, progress) > 0;
+std::int64_t missedBetween(const Solid::State& solid, const Progress& progress) {
+    const bool may = solid.fit->walls && solid.fit->walls->between > 0 && solid.input.parts;
+    return may ? missed(solid, isLarge(solid) ? 1 : 2, progress) : 0;
 }
 
 bool isHeldBetween(const Solid::State& solid, const Progress& progress) {
@@ -242,10 +246,11 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         fit(made, fitting, samples, limit, kRemedy, progress, clock);
     };
     fitAll(solid, signs ? &*signs : nullptr);
-    if (missesBetween(solid, progress)) {
+    if (const std::int64_t roughly = missedBetween(solid, progress)) {
         Solid::State plain = solid;
         fitAll(plain, nullptr);
-        if (missed(plain, kFinestRefine, progress) < missed(solid, kFinestRefine, progress)) solid = plain;
+        const std::int64_t now = isLarge(solid) ? roughly : missed(solid, kFinestRefine, progress);
+        if (missed(plain, isLarge(solid) ? 1 : kFinestRefine, progress) < now) solid = plain;
     }
     // A sheet between two layers of lattice points has none inside; the wall fit holds it nevertheless.
     if (!hasSurface(*solid.field) && !isHeldBetween(solid, progress))
