@@ -24,6 +24,9 @@ constexpr Format kFormats[] = {
     {"nrrd", "image.nrrd", kVolume},
     {"metaimage", "image.mha", kVolume},
     {"mgh", "image.mgh", kVolume},
+    {"mrc", "image.mrc", kVolume},
+    {"npy-volume", "image.npy", kVolume},
+    {"vti", "image.vti", kVolume},
     {"tiff", "image.tif", [](ImageReadOptions& o) { o.channel = o.time = 1; }},
     {"dicom", "image.dcm", [](ImageReadOptions& o) { o.stack = o.time = 1; }},
 };

@@ -1,4 +1,4 @@
-// Readers of images: nifti, nrrd, metaimage, mgh, tiff, dicom.
+// Readers of images: nifti, nrrd, metaimage, mgh, mrc, npy-volume, vti, tiff, dicom.
 #pragma once
 
 #include "tests/fuzz/target.h"
