@@ -2,6 +2,8 @@
 
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(EXPAT REQUIRED)
+find_package(libzip REQUIRED)
 find_package(PNG REQUIRED)
 find_package(TIFF 4.5 REQUIRED)
 find_package(TBB REQUIRED)

@@ -12,7 +12,7 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)  # Package.cmake makes a Debian package of each component
 
 set(ISOWAVE_COMPONENTS base curves subdivision volume)
-set(base_modules base mesh picture vector)
+set(base_modules base vtk mesh picture vector)
 set(curves_modules interval curves2d)
 set(subdivision_modules subdivision_filters subdivision_curves subdivision_lattice subdivision_meshes subdivision)
 set(volume_modules image volume compress_coder compress wavelets polygonize hold lod without_simplify)

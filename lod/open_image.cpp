@@ -141,7 +141,8 @@ InputReport reportOf(const std::string& name, const Image& image, const ImagePla
     report.openBorder = options.openBorder;
     report.origin = image.indexToWorld.origin;
     report.direction = directionOf(image);
-    report.space = Space::lps;
+    report.space = image.space;
+    if (image.unit != "mm") report.unit = image.unit;
     return report;
 }
 
@@ -199,14 +200,14 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     const ImagePlan plan = planFor(image, seen.statistics, name, options, progress);
     const Fitting fitting = fittingOf(options, plan.fit);
     const auto spacing = image.spacing();
-    progress.say(fmt::format("{}: {}x{}x{} voxels of {:.4g} x {:.4g} x {:.4g} mm, {}, {} fit", name,
+    progress.say(fmt::format("{}: {}x{}x{} voxels of {:.4g} x {:.4g} x {:.4g} {}, {}, {} fit", name,
                              image.size[0], image.size[1], image.size[2], spacing[0], spacing[1], spacing[2],
-                             nameOf(plan.kind), nameOf(fitting.method)));
+                             image.unit, nameOf(plan.kind), nameOf(fitting.method)));
 
     Solid::State solid;
     solid.input = reportOf(name, image, plan, seen.statistics, options);
     solid.openBorder = borderOf(solid.input);
-    solid.space = Space::lps;
+    solid.space = image.space;
     const ImageSolid shape = shapeOf(plan, seen, options);
     const auto nodes = [&] {
         NodeCollection result = nodesFromImage(*seen.stream, shape, progress);

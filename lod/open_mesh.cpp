@@ -51,7 +51,7 @@ void checkOptions(const SolidOptions& options) {
             "--close-holes and --thicken exclude each other: what is closed is a solid already; give one");
     if (options.thicken && options.fit.value_or(FitMethod::distance) != FitMethod::distance)
         throw UsageError("--thicken needs the distance fit; leave out --fit");
-    if (options.unit && metresPer(*options.unit) == 0)
+    if (options.unit && (metresPer(*options.unit) == 0 || *options.unit == "angstrom"))
         throw UsageError("--unit: '" + *options.unit + "' is not one of mm, cm, m, in, ft");
 }
 
@@ -270,7 +270,7 @@ LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
     loaded.step = file.step;
     loaded.droppedNote = file.droppedNote;
     loaded.unit = unit.value_or("");
-    if (loaded.format == "GLB") {  // it comes in mm
+    if (loaded.format == "GLB" || loaded.format == "3MF") {  // they come in mm
         loaded.unit = unit.value_or("mm");
         const double scale = 0.001 / metresPer(loaded.unit);
         for (Point& p : loaded.mesh.points)

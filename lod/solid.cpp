@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/cad_model.h"
 #include "compress/packed_file.h"
 #include "io/image/formats/foreign.h"
 #include "io/image/view.h"
@@ -99,6 +100,7 @@ InputKind kindOf(const fs::path& path, const SolidOptions& options) {
                          error ? "cannot be looked at (" + error.message() + ")" : "no such file");
     if (options.image.raw && options.image.raw->size != std::array<std::int64_t, 3>{})
         return InputKind::image;
+    if (const auto text = cadModelText(path)) throw InputError(path.string(), *text);
     if (hasExtension(path, ".vdb"))
         return wavelets::isPyramidFile(path) ? InputKind::pyramid : InputKind::vdb;
     if (compress::isPackedPath(path)) return InputKind::pyramid;

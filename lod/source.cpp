@@ -102,6 +102,7 @@ Fields fieldsOfLattice(const InputReport& input) {
     list.putIf("volume", input.volume);
     list.putIf("origin", input.origin);
     list.putIf("direction", input.direction);
+    list.putIf("unit", input.unit);
     list.put("space", nameOf(input.space.value_or(Space::unspecified)));
     return std::move(list).fields();
 }
@@ -156,6 +157,14 @@ std::optional<WallSummary> wallsOf(const Json& fit) {
 
 const char* nameOf(InputReport::Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 const char* nameOf(Space space) { return kSpaces[static_cast<std::size_t>(space)]; }
+
+std::string unitOf(const InputReport& input) {
+    const InputReport& made = input.madeFrom ? *input.madeFrom : input;
+    if (!made.unit.empty()) return made.unit;
+    const bool isImage = made.kind == InputReport::Kind::mask || made.kind == InputReport::Kind::labels ||
+                         made.kind == InputReport::Kind::greyImage;
+    return isImage || made.space.value_or(Space::unspecified) != Space::unspecified ? "mm" : "";
+}
 
 Fields fieldsOf(const InputReport& input) {
     switch (input.kind) {

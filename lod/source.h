@@ -35,6 +35,8 @@ std::optional<Border> borderOf(const InputReport& input);
 // "mask", "labels", "grey image", "mesh", "level set", "pyramid"
 const char* nameOf(InputReport::Kind kind);
 inline constexpr std::array<const char*, 3> kFitMethods{"binary", "distance", "mask"};
+// What lengths are in, of a pyramid those that it was made of: "mm", "angstrom", ...; empty where nobody has said it.
+std::string unitOf(const InputReport& input);
 // "lps", "ras", "unspecified"
 const char* nameOf(Space space);
 

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "isowave/mesh.h"
 #include "isowave/progress.h"
 #include "isowave/version.h"
 
@@ -40,11 +41,13 @@ struct AffineTransform {
 struct Image {
     std::array<std::int64_t, 3> size{};
     std::vector<float> values;
-    AffineTransform indexToWorld;       // axis[a]: spacing[a] times the direction of axis a
-    std::string componentType;          // as stored: "int16", "uint8", "float32", ...
-    bool integral = false;              // componentType is an integer type
-    double slope = 1, intercept = 0;    // values = slope * stored + intercept (NIfTI's scl_slope, scl_inter)
-    std::string format;                 // "NRRD", "NIfTI", "DICOM series", ...
+    AffineTransform indexToWorld;     // axis[a]: spacing[a] times the direction of axis a
+    std::string componentType;        // as stored: "int16", "uint8", "float32", ...
+    bool integral = false;            // componentType is an integer type
+    double slope = 1, intercept = 0;  // values = slope * stored + intercept (NIfTI's scl_slope, scl_inter)
+    std::string format;               // "NRRD", "NIfTI", "DICOM series", ...
+    Space space = Space::lps;  // unspecified: the file names no anatomical axes; coordinates are its own
+    std::string unit = "mm";   // of world coordinates; "angstrom" of MRC maps
     std::vector<std::string> warnings;  // one line each: "no z spacing in TIFF; 1 x 1 x 1 mm is assumed; ..."
 
     std::int64_t voxelCount() const { return size[0] * size[1] * size[2]; }

@@ -41,14 +41,30 @@ std::vector<double> numbers(const std::string& text) {
     }
 }
 
-std::string headerFileText(const fs::path& path) {
-    constexpr std::uintmax_t kLongestHeader = 1 << 20;
-    std::error_code error;  // then the size is "-1", the largest one, and what can be read is read
-    std::string text(std::min(kLongestHeader, fs::file_size(path, error)), '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(file.gcount()));
+bool isGzip(const fs::path& path) {
+    unsigned char magic[2] = {};
+    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(magic), 2);
+    return magic[0] == 0x1F && magic[1] == 0x8B;
+}
+
+// gzread() reads plain files as they are. In pieces: what comes before a damaged place counts.
+std::string firstBytes(const fs::path& path, std::size_t count) {
+    constexpr std::size_t kPiece = 1 << 14;
+    std::string text;
+    gzFile file = gzopen(path.c_str(), "rb");
+    for (int got = 1; file && got > 0 && text.size() < count;) {
+        const std::size_t held = text.size(), wanted = std::min(kPiece, count - held);
+        text.resize(held + wanted);
+        got = gzread(file, text.data() + held, static_cast<unsigned>(wanted));
+        text.resize(held + static_cast<std::size_t>(std::max(0, got)));
+    }
+    if (file) gzclose(file);
     return text;
+}
+
+std::string headerFileText(const fs::path& path) {
+    constexpr std::size_t kLongestHeader = 1 << 20;
+    return firstBytes(path, kLongestHeader);
 }
 
 namespace {

@@ -20,7 +20,13 @@ std::vector<std::int64_t> wholeNumbers(const std::string& file, const std::strin
 // Numbers as strtod takes them (nan and inf too); anything else ends the list.
 std::vector<double> numbers(const std::string& text);
 
-// The first megabyte: headers are a few kB.
+// Whether a file begins as gzip does.
+bool isGzip(const std::filesystem::path& path);
+
+// The first bytes of a file, inflated if it is compressed by gzip; fewer where it ends, or is damaged, before.
+std::string firstBytes(const std::filesystem::path& path, std::size_t count);
+
+// The first megabyte, inflated if need be: headers are a few kB.
 std::string headerFileText(const std::filesystem::path& path);
 
 std::string sizesText(const std::vector<std::int64_t>& size);

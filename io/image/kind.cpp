@@ -1,12 +1,12 @@
 #include "io/image/kind.h"
 
-#include <fstream>
-#include <map>
-#include <string>
+#include <algorithm>
 
 #include "base/text.h"
 #include "io/image/dicom/data_set.h"
+#include "io/image/formats/mrc.h"
 #include "io/image/formats/nifti.h"
+#include "io/image/header.h"
 #include "io/picture/tiff.h"
 
 namespace isowave::imageio {
@@ -14,16 +14,17 @@ namespace fs = std::filesystem;
 namespace {
 
 FileKind kindByContent(const fs::path& path) {
-    char start[132] = {};
-    std::ifstream(path, std::ios::binary).read(start, sizeof start);
-    const std::string text(start, sizeof start);
-    if (text.compare(128, 4, "DICM") == 0) return FileKind::dicom;
-    if (text.compare(0, 4, "NRRD") == 0) return FileKind::nrrd;
-    if (text.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0) return FileKind::png;
-    if (isTiff(text)) return FileKind::tiff;
+    const std::string text = firstBytes(path, 1024);
+    if (text.starts_with("NRRD")) return FileKind::nrrd;
+    if (text.starts_with("\x93NUMPY")) return FileKind::npy;
     for (const char* key : {"ObjectType =", "NDims =", "Comment ="})
         if (text.starts_with(key)) return FileKind::meta;
     if (beginsAsNifti(niftiHeaderOf(path))) return FileKind::nifti;
+    if (beginsAsMrc(text)) return FileKind::mrc;
+    if (isGzip(path)) return FileKind::none;
+    if (text.size() > 131 && text.compare(128, 4, "DICM") == 0) return FileKind::dicom;
+    if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::png;
+    if (isTiff(text)) return FileKind::tiff;
     return looksLikeDicom(path) ? FileKind::dicom : FileKind::none;  // without a preamble
 }
 
@@ -33,16 +34,41 @@ bool isHeaderFormat(FileKind kind) {
 
 }  // namespace
 
+const std::vector<ImageFormat>& imageFormats() {
+    static const std::vector<ImageFormat> formats = {
+        {FileKind::nifti, "NIfTI", {".nii"}, true, true},
+        // With NIfTI's header and without its magic word.
+        {FileKind::nifti, "Analyze", {}, true, true},
+        {FileKind::nrrd, "NRRD", {".nrrd", ".nhdr"}, true, true},
+        {FileKind::meta, "MetaImage", {".mha", ".mhd"}, true, true},
+        {FileKind::mgh, "MGH", {".mgh", ".mgz"}, true, true},
+        {FileKind::mrc, "MRC", {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".st", ".ali"}, true, true},
+        {FileKind::npy, "NumPy", {".npy"}, true, true},
+        {FileKind::vti, "VTK ImageData", {".vti"}, true, true},
+        {FileKind::tiff, "TIFF", {".tif", ".tiff"}, false, false},
+        {FileKind::png, "PNG", {".png"}, false, false},
+        {FileKind::dicom, "DICOM", {".dcm", ".dicom"}, false, false},
+    };
+    return formats;
+}
+
+std::string imageFormatNames() {
+    std::string names;
+    for (const ImageFormat& format : imageFormats())
+        names += (names.empty() ? "" : ", ") + std::string(format.name);
+    return names;
+}
+
 FileKind kindByName(const fs::path& path) {
-    static const std::map<std::string, FileKind> kinds = {
-        {".nrrd", FileKind::nrrd}, {".nhdr", FileKind::nrrd}, {".mha", FileKind::meta},
-        {".mhd", FileKind::meta},  {".mgh", FileKind::mgh},   {".mgz", FileKind::mgh},
-        {".nii", FileKind::nifti}, {".tif", FileKind::tiff},  {".tiff", FileKind::tiff},
-        {".png", FileKind::png},   {".dcm", FileKind::dicom}, {".dicom", FileKind::dicom}};
-    const std::string name = toLower(path.filename().string());
-    if (name.ends_with(".nii.gz")) return FileKind::nifti;
-    const auto found = kinds.find(toLower(path.extension().string()));
-    return found == kinds.end() ? FileKind::none : found->second;
+    std::string extension = toLower(path.extension().string());
+    const bool gzip = extension == ".gz";
+    if (gzip) extension = toLower(path.stem().extension().string());
+    for (const ImageFormat& format : imageFormats()) {
+        const auto& known = format.extensions;
+        if (std::find(known.begin(), known.end(), extension) != known.end() && (!gzip || format.gzip))
+            return format.kind;
+    }
+    return FileKind::none;
 }
 
 FileKind kindOf(const fs::path& path) {

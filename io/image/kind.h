@@ -1,11 +1,27 @@
-// What kind of image a file is, by its name or, where that says nothing, by its first bytes.
+// The formats of images, and which of them a file is: by its name or, where that says nothing, by its first bytes.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace isowave::imageio {
 
-enum class FileKind { none, nrrd, meta, nifti, mgh, tiff, png, dicom };
+enum class FileKind { none, nifti, nrrd, meta, mgh, mrc, npy, vti, tiff, png, dicom };
+
+// The one list of formats: readers, messages, help and documentation go by it.
+struct ImageFormat {
+    FileKind kind;
+    std::string_view name;                     // as Header::format begins
+    std::vector<std::string_view> extensions;  // lower case, with the dot
+    bool gzip;     // the file may be compressed by gzip as a whole; its name then ends in .gz
+    bool volumes;  // a file may hold several volumes, of which --volume chooses one
+};
+const std::vector<ImageFormat>& imageFormats();
+
+// "NIfTI, NRRD, MetaImage, ..."
+std::string imageFormatNames();
 
 // By the extension alone, in capitals too; the file need not be there.
 FileKind kindByName(const std::filesystem::path& path);

@@ -13,8 +13,11 @@
 #include "io/image/formats/foreign.h"
 #include "io/image/formats/metaimage.h"
 #include "io/image/formats/mgh.h"
+#include "io/image/formats/mrc.h"
 #include "io/image/formats/nifti.h"
+#include "io/image/formats/npy_volume.h"
 #include "io/image/formats/nrrd.h"
+#include "io/image/formats/vti.h"
 #include "io/image/kind.h"
 #include "io/image/plain.h"
 #include "io/image/slices.h"
@@ -90,11 +93,13 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (kind == FileKind::mgh) return openStored(path, readMghHeader(path), options);
     if (kind == FileKind::nrrd) return openStored(path, readNrrdHeader(path), options);
     if (kind == FileKind::meta) return openStored(path, readMetaHeader(path), options);
+    if (kind == FileKind::mrc) return openMrc(path, options);
+    if (kind == FileKind::npy) return openNpyVolume(path, options);
+    if (kind == FileKind::vti) return openVti(path, options);
     if (kind == FileKind::none)
-        throw InputError(
-            name, foreignText(path).value_or(
-                      "is of no known image format (NIfTI, NRRD, MetaImage, MGH, TIFF, PNG, DICOM); for "
-                      "headerless voxels give their size and type"));
+        throw InputError(name,
+                         foreignText(path).value_or("is of no known image format (" + imageFormatNames() +
+                                                    "); for headerless voxels give their size and type"));
     return kind == FileKind::dicom ? openDicomFile(path, options) : openPictureFile(path, options);
 }
 
@@ -108,6 +113,13 @@ void checkAxes(const std::string& name, const Header& header) {
                                                sizeText(header.size), kMostOnAxis));
 }
 
+std::vector<std::string> formatsOfVolumes() {
+    std::vector<std::string> names;
+    for (const ImageFormat& format : imageFormats())
+        if (format.volumes) names.emplace_back(format.name);
+    return names;
+}
+
 // Readers do not look at options that choose among what their format cannot hold.
 void refuseForeignOptions(const std::string& name, const Header& header, const ImageReadOptions& options) {
     struct Choice {
@@ -116,7 +128,7 @@ void refuseForeignOptions(const std::string& name, const Header& header, const I
         std::vector<std::string> formats;  // Header::format begins with one of these
     };
     const Choice choices[] = {
-        {"--volume", options.volume.has_value(), {"NIfTI", "NRRD", "MetaImage", "MGH"}},
+        {"--volume", options.volume.has_value(), formatsOfVolumes()},
         {"--series", options.series.has_value(), {"DICOM"}},
         {"--stack", options.stack.has_value(), {"DICOM"}},
         {"--time", options.time.has_value(), {"DICOM", "TIFF"}},

@@ -104,6 +104,7 @@ SourcePtr openRaw(const std::filesystem::path& path, const ImageReadOptions& opt
     header.size = layout.size;
     header.type = *type;
     header.hasZSpacing = false;
+    header.space = Space::unspecified;
     if (held > needed)
         header.warnings.push_back(
             fmt::format("the file holds {} bytes more than {} {} voxels take; is the size right?",

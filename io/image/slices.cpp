@@ -37,6 +37,7 @@ Header pngHeader(const fs::path& path, const Picture& picture) {
     Header header;
     header.type = picture.type;
     header.size = {picture.width, picture.height, 1};
+    header.space = Space::unspecified;
     if (picture.pixelSize) header.spacing = {(*picture.pixelSize)[0], (*picture.pixelSize)[1], 1};
     return header;
 }

@@ -102,6 +102,8 @@ Image imageOf(const Header& header) {
     image.slope = header.slope;
     image.intercept = header.intercept;
     image.format = header.format;
+    image.space = header.space;
+    image.unit = header.unit;
     image.warnings = header.warnings;
     return image;
 }

@@ -172,6 +172,8 @@ ImageStream::ImageStream(const Image& image, std::int64_t slabSlices) : state_(s
     s.header.componentType = image.componentType;
     s.header.integral = image.integral;
     s.header.format = image.format;
+    s.header.space = image.space;
+    s.header.unit = image.unit;
     s.header.warnings = image.warnings;
     s.all = image.values.data();
     s.checked = true;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/cad_model.h"
 #include "base/polygon_triangles.h"
 #include "base/read_file.h"
 #include "io/mesh/glb_reader.h"
@@ -15,6 +16,8 @@
 #include "io/mesh/off.h"
 #include "io/mesh/ply.h"
 #include "io/mesh/stl.h"
+#include "io/mesh/xml/three_mf.h"
+#include "io/mesh/xml/vtp.h"
 #include "isowave/error.h"
 
 namespace isowave {
@@ -115,20 +118,15 @@ PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::stri
     }
 }
 
-std::string adviceFor(std::string_view extension) {
+std::string adviceFor(const std::filesystem::path& path) {
+    if (const auto text = cadModelText(path)) return *text;
+    const std::string extension = lowerCase(path.extension().string());
     constexpr std::string_view kTo = "export it as STL, OBJ, PLY, OFF or GLB";
     constexpr struct {
         std::string_view extension, what, from;
     } kOthers[] = {
-        {".3mf", "a 3MF archive", "in a slicer or with meshio"},
         {".amf", "an AMF file", "in a slicer"},
         {".gltf", "glTF with its data beside it", "as one GLB file: gltf-transform copy a.gltf a.glb, or"},
-        {".step", "a CAD model in STEP", "in FreeCAD or another CAD program"},
-        {".stp", "a CAD model in STEP", "in FreeCAD or another CAD program"},
-        {".iges", "a CAD model in IGES", "in FreeCAD or another CAD program"},
-        {".igs", "a CAD model in IGES", "in FreeCAD or another CAD program"},
-        {".brep", "a CAD model", "in FreeCAD or another CAD program"},
-        {".fcstd", "a FreeCAD document", "in FreeCAD"},
         {".scad", "an OpenSCAD program", "in OpenSCAD"},
         {".fbx", "an FBX scene", "in Blender"},
         {".dae", "a Collada scene", "in Blender"},
@@ -138,7 +136,6 @@ std::string adviceFor(std::string_view extension) {
         {".wrl", "a VRML scene", "in Blender or MeshLab"},
         {".usdz", "a USD scene", "in Blender"},
         {".vtk", "a VTK file", "in ParaView or with meshio"},
-        {".vtp", "a VTK file", "in ParaView or with meshio"},
         {".msh", "a Gmsh mesh", "with gmsh or meshio"}};
     for (const auto& other : kOthers)
         if (extension == other.extension)
@@ -146,27 +143,49 @@ std::string adviceFor(std::string_view extension) {
     return {};
 }
 
+namespace {
+
+struct ReadFormat {
+    std::string_view extension, name;
+};
+constexpr ReadFormat kRead[] = {{".stl", "STL"}, {".obj", "OBJ"}, {".ply", "PLY"}, {".off", "OFF"},
+                                {".glb", "GLB"}, {".vtp", "VTP"}, {".3mf", "3MF"}};
+
+// The formats' names or extensions, with `between` between them.
+std::string allRead(std::string_view ReadFormat::*what, const char* between) {
+    std::string all;
+    for (const ReadFormat& format : kRead) all += (all.empty() ? "" : between) + std::string(format.*what);
+    return all;
+}
+
+}  // namespace
+
+std::string meshInputNames() { return allRead(&ReadFormat::name, ", "); }
+
 bool isMeshPath(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().string());
-    constexpr std::array<std::string_view, 5> kRead{".stl", ".obj", ".ply", ".off", ".glb"};
-    return std::find(kRead.begin(), kRead.end(), extension) != kRead.end();
+    return std::any_of(std::begin(kRead), std::end(kRead),
+                       [&](const ReadFormat& format) { return format.extension == extension; });
 }
 
 MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress) {
     const std::string name = path.string(), extension = lowerCase(path.extension().string());
     if (extension == ".gz") throw InputError(name, "is compressed by gzip; gunzip it first");
+    if (const auto text = cadModelText(path)) throw InputError(name, *text);
     if (!isMeshPath(path)) {
-        const std::string advice = adviceFor(extension);
+        const std::string advice = adviceFor(path);
         throw InputError(
-            name,
-            advice.empty()
-                ? fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off .glb", extension)
-                : advice);
+            name, advice.empty()
+                      ? fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off .glb .vtp .3mf",
+                                    extension)
+                      : advice);
     }
     progress("reading", 0.0);
     const std::string bytes = readFile(path, "a mesh file");
     progress("reading", 0.2);
-    PolygonSoup soup = parseMesh(bytes, meshFormatOf(path), name);
+    PolygonSoup soup = extension == ".vtp"   ? readVtp(bytes, name)
+                       : extension == ".3mf" ? readThreeMf(bytes, name)
+                                             : parseMesh(bytes, meshFormatOf(path), name);
     progress("reading", 0.8);
     checkFaces(name, soup);
     checkPoints(name, soup.points, soup.float32);

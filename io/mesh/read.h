@@ -10,7 +10,8 @@
 
 namespace isowave {
 
-// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h).
+// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h); xml/vtp.h and xml/three_mf.h read what has
+// no MeshFormat, which is what is written.
 PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
 // What readMesh() reads, and what only a repair and a report ask for.
@@ -24,8 +25,11 @@ struct MeshFile {
 };
 MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress = {});
 
-// How to get a file of another kind in, by its extension in lower case: ".step" -> "is a CAD model in STEP; ...". Empty for an
-// extension that says nothing.
-std::string adviceFor(std::string_view extension);
+// "STL, OBJ, ...": what is read.
+std::string meshInputNames();
+
+// How to get a file of another kind in, by its extension, CAD models also by their first bytes: "part.amf" -> "is an AMF file,
+// which is not read; ...". Empty for what says nothing.
+std::string adviceFor(const std::filesystem::path& path);
 
 }  // namespace isowave

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "isowave/error.h"
 
@@ -39,7 +40,8 @@ std::vector<std::size_t> shapeOf(const std::string& text, const std::string& nam
         if (c >= '0' && c <= '9') {
             digits += c;
         } else if (!digits.empty()) {
-            if (digits.size() > 12) throw InputError(name, "its shape " + text + " is not a picture's");
+            if (digits.size() > 12)
+                throw InputError(name, "its shape " + text + " has more than 10^12 elements along an axis");
             shape.push_back(std::stoull(digits));
             digits.clear();
         }
@@ -48,16 +50,22 @@ std::vector<std::size_t> shapeOf(const std::string& text, const std::string& nam
 }
 
 // '<f8', '>i2', '|u1'
-ValueType typeOf(const std::string& description, const std::string& name) {
-    if (description.size() == 5 && description.front() == '\'' && description.back() == '\'') {
-        const std::string kind = description.substr(2, 2);
-        if (kind == "b1") return ValueType::uint8;
-        const auto found = std::find(std::begin(kKinds), std::end(kKinds), kind);
-        if (found != std::end(kKinds)) return static_cast<ValueType>(found - std::begin(kKinds));
-    }
-    throw InputError(
-        name, "holds elements of type " + description +
-                  "; booleans, integers and floats of 4 or 8 bytes are read: save it with .astype(float)");
+std::optional<NpyHeader> elementsOf(const std::string& description) {
+    if (description.size() != 5 || description.front() != '\'' || description.back() != '\'')
+        return std::nullopt;
+    NpyHeader header;
+    const std::string kind = description.substr(2, 2);
+    const auto found = std::find(std::begin(kKinds), std::end(kKinds), kind);
+    header.half = kind == "f2";
+    if (header.half)
+        header.type = ValueType::uint16;
+    else if (found != std::end(kKinds))
+        header.type = static_cast<ValueType>(found - std::begin(kKinds));
+    else if (kind != "b1")
+        return std::nullopt;
+    const char order = description[1];
+    header.bigEndian = order == '>' || (order != '<' && std::endian::native == std::endian::big);
+    return header;
 }
 
 void requireShape(const std::vector<std::size_t>& shape, const std::string& text, const std::string& name) {
@@ -85,9 +93,10 @@ void takeElements(const char* data, bool fortran, bool swap, Picture& picture) {
 
 }  // namespace
 
-Picture readNpy(std::string_view bytes, const std::string& name) {
-    if (bytes.size() < 10 || !bytes.starts_with(kMagic))
-        throw InputError(name, "is not a NumPy array (.npy)");
+bool beginsAsNpy(std::string_view bytes) { return bytes.size() >= 10 && bytes.starts_with(kMagic); }
+
+NpyHeader readNpyHeader(std::string_view bytes, const std::string& name) {
+    if (!beginsAsNpy(bytes)) throw InputError(name, "is not a NumPy array (.npy)");
     const auto byte = [&](std::size_t k) {
         return static_cast<std::size_t>(static_cast<unsigned char>(bytes[k]));
     };
@@ -99,16 +108,33 @@ Picture readNpy(std::string_view bytes, const std::string& name) {
     std::size_t length = byte(8) | byte(9) << 8;
     if (version > 1) length |= byte(10) << 16 | byte(11) << 24;
     if (start + length > bytes.size()) throw InputError(name, "ends inside its header; it is truncated");
-    const std::string_view header = bytes.substr(start, length), data = bytes.substr(start + length);
+    const std::string_view text = bytes.substr(start, length);
+    const std::string description = headerValue(text, "descr", name);
+    const std::optional<NpyHeader> elements = elementsOf(description);
+    if (!elements)
+        throw InputError(
+            name,
+            "holds elements of type " + description +
+                "; booleans, integers and floats of 2, 4 or 8 bytes are read: save it with .astype(float)");
+    NpyHeader header = *elements;
+    header.fortran = headerValue(text, "fortran_order", name) == "True";
+    header.shapeText = headerValue(text, "shape", name);
+    header.shape = shapeOf(header.shapeText, name);
+    header.data = start + length;
+    return header;
+}
 
+Picture readNpy(std::string_view bytes, const std::string& name) {
+    const NpyHeader header = readNpyHeader(bytes, name);
+    const std::string_view data = bytes.substr(header.data);
+    if (header.half)
+        throw InputError(
+            name, "holds floats of 2 bytes, which are read of volumes alone: save it with .astype(float)");
     Picture picture;
-    const std::string description = headerValue(header, "descr", name);
-    picture.type = typeOf(description, name);
+    picture.type = header.type;
     picture.bits = static_cast<int>(8 * sizeOf(picture.type));
-    const bool fortran = headerValue(header, "fortran_order", name) == "True";
-    const std::string shapeText = headerValue(header, "shape", name);
-    const std::vector<std::size_t> shape = shapeOf(shapeText, name);
-    requireShape(shape, shapeText, name);
+    const std::vector<std::size_t>& shape = header.shape;
+    requireShape(shape, header.shapeText, name);
     picture.height = static_cast<std::int64_t>(shape[0]);
     picture.width = static_cast<std::int64_t>(shape[1]);
     picture.channels = shape.size() == 3 ? static_cast<int>(shape[2]) : 1;
@@ -116,10 +142,10 @@ Picture readNpy(std::string_view bytes, const std::string& name) {
         shape[0] * shape[1] * static_cast<std::size_t>(picture.channels) * sizeOf(picture.type);
     if (data.size() < needed)
         throw InputError(name, fmt::format("shape {} needs {} bytes but the file holds {}; it is truncated",
-                                           shapeText, needed, data.size()));
+                                           header.shapeText, needed, data.size()));
     picture.samples.resize(needed);
-    const char order = description[1];
-    takeElements(data.data(), fortran, (order == '<' || order == '>') && order != kNativeOrder, picture);
+    takeElements(data.data(), header.fortran, header.bigEndian != (std::endian::native == std::endian::big),
+                 picture);
     return picture;
 }
 

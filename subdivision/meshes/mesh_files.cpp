@@ -96,8 +96,7 @@ MeshFormat polygonFormatOf(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().string());
     for (const MeshFormat format : {MeshFormat::obj, MeshFormat::off, MeshFormat::ply})
         if (extension == extensionOf(format)) return format;
-    if (const std::string advice = adviceFor(extension); !advice.empty())
-        throw InputError(path.string(), advice);
+    if (const std::string advice = adviceFor(path); !advice.empty()) throw InputError(path.string(), advice);
     throw InputError(path.string(),
                      fmt::format("'{}' is no kind of polygon mesh; they are .obj .off .ply", extension));
 }

@@ -30,6 +30,7 @@
 #include "temp_folder.h"
 #include "tests/io/image/dicom_writer.h"
 #include "tests/io/image/written.h"
+#include "tests/io/mesh/zip.h"
 #include "volume/mesh_repair.h"
 #include "volume/vdb_file.h"
 #include "wavelets/pyramid_file.h"
@@ -111,6 +112,39 @@ TEST_F(Sweep, OfBinaryMeshes) {
     all("a.ply", written(folder, MeshFormat::ply), readAndRepair);
     all("b.ply", written(folder, MeshFormat::ply), readPolygonsOf);
     all("a.glb", written(folder, MeshFormat::glb), readAndRepair);
+}
+
+// A box as polygons, its numbers as text, and as an archive with a checksum.
+TEST_F(Sweep, OfXmlMeshes) {
+    std::string points, corners, ends, vertices, triangles;
+    const TriangleMesh mesh = twoCubes();
+    for (const Point& p : mesh.points) {
+        points += fmt::format("{} {} {} ", p[0], p[1], p[2]);
+        vertices += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p[0], p[1], p[2]);
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto& [a, b, c] = mesh.triangles[i];
+        corners += fmt::format("{} {} {} ", a, b, c);
+        ends += fmt::format("{} ", 3 * (i + 1));
+        triangles += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>", a, b, c);
+    }
+    all("a.vtp",
+        fmt::format(
+            "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"{}\" "
+            "NumberOfPolys=\"{}\"><Points><DataArray "
+            "type=\"Float32\" NumberOfComponents=\"3\" "
+            "format=\"ascii\">{}</DataArray></Points><Polys><DataArray "
+            "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">{}</DataArray><DataArray type=\"Int32\" "
+            "Name=\"offsets\" format=\"ascii\">{}</DataArray></Polys></Piece></PolyData></VTKFile>",
+            mesh.points.size(), mesh.triangles.size(), points, corners, ends),
+        readAndRepair);
+    all("a.3mf",
+        zipOf(
+            {{"3D/3dmodel.model",
+              "<model><resources><object id=\"1\"><mesh><vertices>" + vertices + "</vertices><triangles>" +
+                  triangles +
+                  "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>"}}),
+        readAndRepair);
 }
 
 std::string textStl() {
@@ -270,6 +304,79 @@ std::string mgh() {
 TEST_F(Sweep, OfMgh) {
     all("a.mgh", mgh(), imageReader());
     all("a.mgz", gzipped(folder, mgh()), imageReader());
+}
+
+TEST_F(Sweep, OfNpyVolumes) {
+    all("a.npy", npyFile("<i2", true, "7, 5, 4", bytes(pattern())), imageReader());
+    all("b.npy", npyFile(">i2", false, "7, 5, 4", bytes(pattern())), imageReader());
+    all("a.npy.gz", gzipped(folder, npyFile("<f2", false, "7, 5, 4", bytes(pattern()))), imageReader());
+}
+
+MrcFile map() {
+    MrcFile file;
+    file.size = file.samples = {7, 5, 4};
+    file.cell = {4.9f, 5.5f, 10};
+    file.voxels = bytes(pattern());
+    return file;
+}
+
+TEST_F(Sweep, OfMrc) {
+    all("a.mrc", map().file(), imageReader());
+    MrcFile half = map();
+    half.mode = 12;
+    half.axes = {3, 1, 2};
+    half.extended = 16;
+    all("b.map", half.file(), imageReader());
+    all("a.mrc.gz", gzipped(folder, map().file()), imageReader());
+}
+
+TEST_F(Sweep, OfAnalyze) {
+    NiftiFile pair = smallNifti();
+    pair.pair = true;
+    std::ofstream(folder / "p.img", std::ios::binary) << pair.voxels;
+    std::string header = pair.header().substr(0, 348);
+    header.replace(344, 4, std::string(4, '\0'));
+    all("p.hdr", header, imageReader());
+}
+
+std::string base64(const std::string& text) {
+    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t at = 0; at < text.size(); at += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            bits = bits << 8 | (at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0);
+        for (int i = 0; i < 4; ++i) out += at + i > text.size() ? '=' : digits[bits >> (18 - 6 * i) & 63];
+    }
+    return out;
+}
+
+std::string vti(const std::string& attributes, const std::string& array, const std::string& behind = "") {
+    return "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" header_type=\"UInt32\"" + attributes +
+           "><ImageData Spacing=\"0.7 1.1 2.5\"><Piece Extent=\"0 6 0 4 0 3\"><PointData><DataArray "
+           "type=\"Int16\" Name=\"a\" " +
+           array + "</DataArray></PointData></Piece></ImageData>" + behind + "</VTKFile>";
+}
+
+// Behind the last number a file may end anywhere.
+TEST_F(Sweep, OfVti) {
+    const std::string voxels = bytes(pattern()), length = bytes(std::vector<std::uint32_t>{280});
+    std::string text;
+    for (const auto v : pattern()) text += fmt::format("{} ", v);
+    all("a.vti", vti("", "format=\"ascii\">" + text), imageReader());
+    all("b.vti", vti("", "format=\"binary\">" + base64(length + voxels)), imageReader());
+    all("c.vti",
+        vti("", "format=\"appended\" offset=\"0\">", "<AppendedData encoding=\"raw\">_" + length + voxels),
+        imageReader(), Prefixes::maybeRead);
+    std::string packed(compressBound(voxels.size()), '\0');
+    uLongf size = packed.size();
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(voxels.data()),
+             voxels.size());
+    packed.resize(size);
+    const std::string head = bytes(std::vector<std::uint32_t>{1, 280, 0, static_cast<std::uint32_t>(size)});
+    all("d.vti",
+        vti(" compressor=\"vtkZLibDataCompressor\"", "format=\"binary\">" + base64(head) + base64(packed)),
+        imageReader());
 }
 
 // Every byte is a voxel: nothing but the length can be wrong.

@@ -1,4 +1,4 @@
-// Readers of images: nifti, nrrd, metaimage, mgh, tiff, dicom, dicom-compressed.
+// Readers of images: nifti, nrrd, metaimage, mgh, mrc, npy-volume, vti, tiff, dicom, dicom-compressed.
 #pragma once
 
 #include "tests/fuzz/target.h"

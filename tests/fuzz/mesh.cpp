@@ -54,6 +54,11 @@ std::vector<Target> meshTargets() {
          {MeshFormat::stl, MeshFormat::off, MeshFormat::obj, MeshFormat::ply, MeshFormat::glb})
         targets.push_back(
             {extensionOf(format) + 1, [format](std::string_view bytes) { return read(bytes, format); }});
+    for (const char* extension : {"vtp", "3mf"})
+        targets.push_back({extension, [extension](std::string_view bytes) {
+                               const auto path = fileOf(bytes, std::string("mesh.") + extension);
+                               return answerOf(path.string(), [&] { check(readMeshFile(path)); });
+                           }});
     return targets;
 }
 

@@ -4,12 +4,15 @@
 Each is written here from its format's description, not by isowave. The files of tests/data that are small enough come
 beside them. The same bytes every time.
 """
+import base64
 import gzip
+import io
 import json
 import pathlib
 import shutil
 import struct
 import sys
+import zipfile
 import zlib
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / "data"
@@ -51,6 +54,28 @@ def meshes():
         "f %d %d \\\n %d %d\n" % tuple(i - 8 for i in q) for q in QUADS)).encode()
     yield from plys()
     yield from glbs()
+    yield from xmls()
+
+
+def xmls():
+    def array(kind, name, numbers, components=1):
+        return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">' +
+                " ".join(map(str, numbers)) + "</DataArray>")
+    ends = range(4, 4 * len(QUADS) + 1, 4)
+    yield "vtp/quads.vtp", ('<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="8" NumberOfPolys="6"><Points>' +
+                            array("Float32", "Points", (x for p in CUBE for x in p), 3) + "</Points><Polys>" +
+                            array("Int64", "connectivity", (i for q in QUADS for i in q)) + array("Int32", "offsets", ends) +
+                            "</Polys></Piece></PolyData></VTKFile>").encode()
+    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in TETRAHEDRON)
+    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in TRIANGLES)
+    for name, method in (("stored", zipfile.ZIP_STORED), ("deflated", zipfile.ZIP_DEFLATED)):
+        out = io.BytesIO()
+        with zipfile.ZipFile(out, "w", method) as archive:
+            archive.writestr(zipfile.ZipInfo("3D/3dmodel.model"), (
+                f'<model unit="inch"><resources><object id="1"><mesh><vertices>{vertices}</vertices><triangles>{triangles}'
+                '</triangles></mesh></object></resources><build><item objectid="1" transform="1 0 0 0 1 0 0 0 1 1 2 3"/></build>'
+                '</model>'), method)
+        yield f"3mf/{name}.3mf", out.getvalue()
 
 
 def plys():
@@ -170,6 +195,22 @@ def images():
     mgh = struct.pack(">7ih3f12f", 1, *SIZE, 1, 4, 0, 1, 0.5, 0.5, 2, -1, 0, 0, 0, 0, -1, 0, 1, 0, 1, 2, 3).ljust(284, b"\0")
     yield "mgh/short.mgh", mgh + struct.pack(">24h", *VOXELS)
     yield "mgh/packed.mgh", gzip.compress(mgh + struct.pack(">24h", *VOXELS), mtime=0)
+    mrc = struct.pack("<10i6f3i", *SIZE, 1, 0, 0, 0, *SIZE, 2, 3, 4, 90, 90, 90, 1, 2, 3).ljust(208, b"\0") + b"MAP DD\0\0"
+    yield "mrc/short.mrc", mrc.ljust(1024, b"\0") + SHORTS
+    yield "mrc/packed.mrc", gzip.compress(mrc.ljust(1024, b"\0") + SHORTS, mtime=0)
+    for order, dtype, data in (("True", "<i2", SHORTS), ("False", "|u1", VOXELS), ("False", "<f2", struct.pack("<24e", *VOXELS))):
+        head = f"{{'descr': '{dtype}', 'fortran_order': {order}, 'shape': ({', '.join(map(str, SIZE))}), }}".ljust(117) + "\n"
+        yield f"npy-volume/{dtype[1:]}_{order}.npy", b"\x93NUMPY\1\0\x76\0" + head.encode() + data
+    vti = ('<VTKFile type="ImageData" byte_order="LittleEndian" header_type="UInt32"{}><ImageData Origin="1 2 3"><Piece Extent='
+           '"0 3 0 2 0 1"><PointData><DataArray type="Int16" Name="a" {}</DataArray></PointData></Piece></ImageData>')
+    length = struct.pack("<I", len(SHORTS))
+    yield "vti/ascii.vti", (vti.format("", 'format="ascii">' + " ".join(map(str, VOXELS))) + "</VTKFile>").encode()
+    yield "vti/binary.vti", (vti.format("", 'format="binary">' + base64.b64encode(length + SHORTS).decode()) + "</VTKFile>").encode()
+    yield "vti/appended.vti", (vti.format("", 'format="appended" offset="0">').encode() + b'<AppendedData encoding="raw">_' +
+                               length + SHORTS + b"</AppendedData></VTKFile>")
+    head = struct.pack("<4I", 1, len(SHORTS), 0, len(packed))
+    yield "vti/zlib.vti", (vti.format(' compressor="vtkZLibDataCompressor"', 'format="binary">' + (
+        base64.b64encode(head) + base64.b64encode(packed)).decode()) + "</VTKFile>").encode()
     yield from tiffs()
     yield from dicoms()
 

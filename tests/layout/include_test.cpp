@@ -46,15 +46,16 @@ bool startsWith(const std::string& text, const std::string& start) { return text
 // that is no part of its own.
 std::map<std::string, std::set<std::string>> makeArrows() {
     std::map<std::string, std::set<std::string>> arrows = {{"isowave", {}}, {"base", {}}};
-    const std::set<std::string> io = {"io/image", "io/mesh", "io/picture", "io/vector"};
+    const std::set<std::string> io = {"io/image", "io/mesh", "io/picture", "io/vector", "io/vtk"};
     const auto add = [&](const std::string& part, std::set<std::string> to) {
         to.insert("base");
         arrows[part] = std::move(to);
     };
     for (const std::string& format : io) add(format, {});
-    add("io/image", {"io/picture"});  // a folder of PNG slices
+    add("io/image", {"io/picture", "io/vtk"});  // a folder of PNG slices; .vti
+    add("io/mesh", {"io/vtk"});                 // .vtp
     // Each of these may use all that the ones before it may.
-    std::set<std::string> below = {"io/image", "io/mesh", "wavelets/interval", "compress/coder"};
+    std::set<std::string> below = {"io/image", "io/mesh", "io/vtk", "wavelets/interval", "compress/coder"};
     add("compress/coder", {});
     add("wavelets/interval", {});
     add("volume", {"io/image", "io/mesh"});
@@ -93,6 +94,7 @@ const std::set<std::string> kWithoutGrids = {"isowave",
                                              "io/mesh",
                                              "io/picture",
                                              "io/vector",
+                                             "io/vtk",
                                              "wavelets/interval",
                                              "compress/coder",
                                              "curves2d",

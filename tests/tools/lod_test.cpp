@@ -1,4 +1,6 @@
 // isowave lod on small inputs: files, report, talk, determinism. What levels are like is tested in tests/lod.
+#include <gmock/gmock.h>
+
 #include <set>
 
 #include "tests/tools/inputs.h"
@@ -9,6 +11,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 using Json = nlohmann::json;
+using testing::HasSubstr;
 
 const double kPi = std::acos(-1.0);
 
@@ -277,6 +280,24 @@ TEST(Headerless, ImagesAreReadAsTheOptionsSay) {
     EXPECT_EQ(report["input"]["dimensions"], Json({20, 24, 28}));
     EXPECT_EQ(report["input"]["spacing"], Json({1.0, 1.0, 2.0}));
     EXPECT_NEAR(report["levels"][0]["volume"].get<double>(), 2 * 4.0 / 3.0 * kPi * 216, 60);
+}
+
+TEST(Space, IsNotSaidWhereTheFileDoesNotSayIt) {
+    const Folder folder;
+    const Size size{24, 20, 16};
+    writeNrrd(folder / "a.nrrd", size, greyBall(size, 5), "spacings: 1 1 1\n");
+    const Arguments lod{"lod", (folder / "a.nrrd").string(), "--iso", "0", "--levels", "0", "--format",
+                        "obj"};
+    Arguments plain = lod, ras = lod;
+    plain.insert(plain.end(), {"-o", (folder / "o").string()});
+    ras.insert(ras.end(), {"--space", "ras", "-o", (folder / "ras").string()});
+    succeed(plain);
+    EXPECT_EQ(jsonFile(folder / "o/report.json")["input"]["space"], "unspecified");
+    EXPECT_EQ(contentOf(folder / "o/o_L0.obj").find("SPACE="), std::string::npos);
+    const Result refused = isowave(ras);
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_THAT(refused.err, HasSubstr("names no sides of a body"));
+    EXPECT_FALSE(fs::exists(folder / "ras"));
 }
 
 TEST(Space, RasNegatesXAndY) {

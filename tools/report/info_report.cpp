@@ -57,6 +57,8 @@ std::string jsonOf(const ImageInfo& info) {
     json["spacing"] = image.spacing();
     json["origin"] = image.indexToWorld.origin;
     json["direction"] = lod::directionOf(image);
+    json["space"] = lod::nameOf(image.space);
+    json["unit"] = image.unit;
     json["range"] = {finite(statistics.low), finite(statistics.high)};
     for (const auto& [percent, value] : statistics.percentiles)
         json["percentiles"][std::to_string(percent)] = finite(value);
@@ -69,8 +71,9 @@ std::string textOf(const ImageInfo& info) {
     const Image& image = info.header;
     std::string text = fmt::format("{}: {}, {}\n", info.path, image.format, image.componentType);
     text += fmt::format("size       {} x {} x {} voxels\n", image.size[0], image.size[1], image.size[2]);
-    text += fmt::format("spacing    {} mm\n", triples(image.spacing()));
-    text += fmt::format("origin     {} mm (LPS)\n", triples(image.indexToWorld.origin));
+    text += fmt::format("spacing    {} {}\n", triples(image.spacing()), image.unit);
+    text += fmt::format("origin     {} {}{}\n", triples(image.indexToWorld.origin), image.unit,
+                        spaceText(image.space));
     const auto direction = lod::directionOf(image);
     for (std::size_t axis = 0; axis < 3; ++axis)
         text += fmt::format("{} {} runs {}\n", axis == 0 ? "direction " : "          ", "xyz"[axis],
@@ -185,9 +188,10 @@ std::string textOf(const PyramidInfo& info) {
     text += fmt::format("{} in memory ({:.1f} bytes a control point), {} on disk ({:.2f})\n",
                         bytesText(static_cast<double>(info.memoryBytes)), perPoint(info.memoryBytes),
                         bytesText(static_cast<double>(info.fileBytes)), perPoint(info.fileBytes));
-    const auto space = info.source.find("input.space");  // a JSON text
-    const bool isMetric = space != info.source.end() && space->second != "\"unspecified\"";
-    for (const LevelReport& level : info.levels) text += storyText(level, isMetric ? " mm" : "") + "\n";
+    const auto input = lod::inputOfSource(info.source);
+    const std::string unit = input ? lod::unitOf(*input) : "";
+    for (const LevelReport& level : info.levels)
+        text += storyText(level, unit.empty() ? "" : " " + unit) + "\n";
     return text;
 }
 

@@ -12,11 +12,14 @@
 #include "base/atomic_file.h"
 #include "base/heap.h"
 #include "base/number_text.h"
+#include "io/image/kind.h"
 #include "io/mesh/glb_lods.h"
+#include "io/mesh/read.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
 #include "isowave/ladder.h"
 #include "lod/budgets.h"
+#include "lod/source.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/option_values.h"
@@ -92,10 +95,8 @@ struct MeshWriter {
 
 // " [mm]" behind lengths where it is known.
 std::string unitShown(const Solid& solid) {
-    const InputReport& input = solid.input();
-    const std::string& unit = input.madeFrom ? input.madeFrom->unit : input.unit;
-    if (!unit.empty()) return " [" + unit + "]";
-    return solid.space() == Space::unspecified ? "" : " [mm]";
+    const std::string unit = lod::unitOf(solid.input());
+    return unit.empty() ? "" : " [" + unit + "]";
 }
 
 // All that there is to tell about one input's meshes.
@@ -203,26 +204,32 @@ class Lod : public Command {
     std::optional<bool> quantizedLods_;  // --glb-lods
 };
 
+const std::string& lodDetails() {
+    static const std::string text =
+        "INPUT is an image (" + imageio::imageFormatNames() +
+        "; slices in a folder; raw with --size), a mesh (" + meshInputNames() +
+        "), a level set (.vdb) or a "
+        "pyramid (analyse, pack). -o "
+        "out/part "
+        "makes "
+        "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
+        "are "
+        "part_s0.ply, part_s1.ply, ... Level L is step 3L: every axis halved L times. With a budget there "
+        "is "
+        "one mesh a budget instead of one a level (give --levels to have both): the step whose topology "
+        "suits "
+        "it, with edges collapsed; the report says which and why. The ladder ends where one node is left, "
+        "or "
+        "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
+        "leaves the folder as it was. Several inputs, -o out: each gets a folder of its own, out/NAME, as "
+        "if "
+        "it were run alone; one that fails does not stop the others.";
+    return text;
+}
+
 Lod::Lod()
-    : Command(
-          {"lod", "INPUT...", "a solid -> a ladder of closed meshes, one a level, and a report",
-           "INPUT is an image (NIfTI, NRRD, MetaImage, MGH, TIFF; a folder of DICOM, TIFF or PNG slices; raw "
-           "with "
-           "--size), a mesh (STL, OBJ, PLY, OFF, GLB), a level set (.vdb) or a pyramid (analyse, pack). -o "
-           "out/part "
-           "makes "
-           "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
-           "are "
-           "part_s0.ply, part_s1.ply, ... Level L is step 3L: every axis halved L times. With a budget there "
-           "is "
-           "one mesh a budget instead of one a level (give --levels to have both): the step whose topology "
-           "suits "
-           "it, with edges collapsed; the report says which and why. The ladder ends where one node is left, "
-           "or "
-           "before the first level at which the whole solid has vanished. A run that fails or is interrupted "
-           "leaves the folder as it was. Several inputs, -o out: each gets a folder of its own, out/NAME, as "
-           "if "
-           "it were run alone; one that fails does not stop the others."}) {
+    : Command({"lod", "INPUT...", "a solid -> a ladder of closed meshes, one a level, and a report",
+               lodDetails()}) {
     declareOutput("the folder that gets one mesh a level, and report.json");
     parts_.declare(options_);
     options_.flag("--dry-run",

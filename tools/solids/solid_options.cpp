@@ -1,6 +1,7 @@
 #include "tools/solids/solid_options.h"
 
 #include "io/mesh/units.h"
+#include "lod/source.h"
 #include "tools/option_values.h"
 
 namespace isowave::tools {
@@ -261,8 +262,7 @@ void SpaceChoice::declare(OptionList& options) {
 }
 
 double metresPerUnitOf(const Solid& solid) {
-    const InputReport& input = solid.input();
-    const std::string& unit = input.madeFrom ? input.madeFrom->unit : input.unit;
+    const std::string unit = lod::unitOf(solid.input());
     return metresPer(unit.empty() ? "mm" : unit);
 }
 
@@ -270,8 +270,9 @@ Space SpaceChoice::of(Space ofSolid) const {
     if (!space) return ofSolid;
     if (ofSolid == Space::unspecified)
         throw UsageError(
-            "--space: the axes of this input have no medical meaning (not an image, and no SPACE= in the "
-            "mesh); leave it out");
+            "--space: the axes of this input have no medical meaning (an image that names no sides of a "
+            "body, or a "
+            "mesh without SPACE=); leave it out");
     return *space;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/cad_model.h"
 #include "base/polygon_triangles.h"
 #include "base/read_file.h"
 #include "base/text.h"
@@ -15,6 +16,7 @@
 #include "isowave/subdivision.h"
 #include "lod/open_mesh.h"
 #include "lod/solid.h"
+#include "lod/source.h"
 #include "tools/view/level_facts.h"
 
 namespace isowave::tools {
@@ -145,8 +147,11 @@ view::PageOptions optionsOf(const Json& report, const std::string& title) {
     const Json& input = report["input"];
     const std::string space = textAt(input, "space"), unit = textAt(input, "unit");
     const bool anatomical = space == "lps" || space == "ras";
+    const Json& made = input.contains("source") && input["source"].is_object() ? input["source"] : input;
+    const std::string kind = textAt(made, "kind");
+    const bool isImage = kind == "mask" || kind == "labels" || kind == "grey image";
     view::PageOptions options{.title = title,
-                              .unit = unit.empty() && anatomical ? "mm" : unit,
+                              .unit = unit.empty() && (anatomical || isImage) ? "mm" : unit,
                               .anatomical = anatomical,
                               .yUp = textAt(input, "kind").rfind("image", 0) != 0};
     options.notes.push_back("Made from " + fs::path(textAt(input, "path")).filename().string() + ".");
@@ -276,6 +281,7 @@ PagePointer pageOfFile(const fs::path& path, Console& console) {
     const std::string extension = extensionOf(path);
     if ((extension == ".vdb" || extension == ".iwz") && lod::kindOf(path, {}) == lod::InputKind::pyramid)
         return pageOfPyramid(path, console);
+    if (const auto text = cadModelText(path)) throw InputError(path.string(), *text);
     throw InputError(
         path.string(),
         "is nothing that view shows: a folder of isowave lod or curves, a pyramid, a packed solid, a mesh, "
@@ -297,9 +303,7 @@ void requireAll(const std::vector<fs::path>& inputs, const Is& is, const char* k
 view::PageOptions pageOptionsOf(const InputReport& input, const std::string& name) {
     const InputReport& source = input.madeFrom ? *input.madeFrom : input;
     const bool anatomical = source.space.value_or(Space::unspecified) != Space::unspecified;
-    view::PageOptions options{.title = name,
-                              .unit = source.unit.empty() && anatomical ? "mm" : source.unit,
-                              .anatomical = anatomical};
+    view::PageOptions options{.title = name, .unit = lod::unitOf(input), .anatomical = anatomical};
     options.notes.push_back("Made from " + fs::path(source.path).filename().string() + ".");
     return options;
 }

@@ -186,6 +186,7 @@ void stackBlindly(const std::string& folder, DicomStack& stack, PlacedStack& pla
         if (frame.row) continue;
         frame.row = Vec3{1, 0, 0};
         frame.column = Vec3{0, 1, 0};
+        placed.saysSides = false;
     }
     const Vec3 normal = stack[0].normal();
     for (std::size_t i = 0; i < stack.size(); ++i) {

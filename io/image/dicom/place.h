@@ -20,6 +20,7 @@
 namespace isowave::imageio {
 
 struct PlacedStack {
+    bool saysSides = true;        // false: nothing says where left and right are
     DicomStack frames;            // from the origin on
     std::vector<double> heights;  // t[i], mm
     double step = 0;              // mm; 0 where a single frame or the files do not say it

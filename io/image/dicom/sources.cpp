@@ -75,6 +75,7 @@ Header headerOf(const PlacedStack& placed, const ImageReadOptions& options) {
         header.spacing[2] = header.spacing[0];
     }
     takeRemarks(placed.frames, header);
+    if (!placed.saysSides) header.space = Space::unspecified;
     const double lean = dot(header.axis[0], header.axis[1]);
     if (std::abs(lean) > 1e-3)
         header.warnings.push_back(

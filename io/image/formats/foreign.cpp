@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <vector>
 
+#include "base/cad_model.h"
 #include "base/text.h"
 #include "base/value_type.h"
 
@@ -49,67 +48,12 @@ std::string start(const fs::path& path, std::size_t count) {
     return text;
 }
 
-template <class T>
-T at(const std::string& bytes, std::size_t offset, bool swap) {
-    std::array<char, sizeof(T)> value;
-    std::copy_n(bytes.data() + offset, sizeof(T), value.data());
-    if (swap) std::reverse(value.begin(), value.end());
-    return std::bit_cast<T>(value);
-}
-
-// ccpem.ac.uk/mrc_format: nx, ny, nz, mode, ..., mx, my, mz, the cell's edges in Angstrom, ..., "MAP " at byte 208.
-std::optional<RawAdvice> mrcAdvice(const fs::path& path) {
-    const std::string bytes = start(path, 1024);
-    if (bytes.compare(208, 3, "MAP") != 0) return std::nullopt;
-    RawAdvice advice;
-    advice.bigEndian = bytes[212] == 0x11;
-    const bool swap = advice.bigEndian != (std::endian::native == std::endian::big);
-    static const std::map<std::int32_t, const char*> types = {
-        {0, "int8"}, {1, "int16"}, {2, "float32"}, {6, "uint16"}};
-    std::array<double, 3> spacing{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        advice.size[a] = at<std::int32_t>(bytes, 4 * a, swap);
-        spacing[a] = double{at<float>(bytes, 40 + 4 * a, swap)} / at<std::int32_t>(bytes, 28 + 4 * a, swap);
-    }
-    if (std::all_of(spacing.begin(), spacing.end(), [](double s) { return s > 0 && std::isfinite(s); }))
-        advice.spacing = spacing;
-    const auto type = types.find(at<std::int32_t>(bytes, 12, swap));
-    if (type != types.end()) advice.type = type->second;
-    advice.headerBytes = 1024 + std::int64_t{at<std::int32_t>(bytes, 92, swap)};
-    return advice;
-}
-
 // What stands behind `key` in a header of text, up to one of `ends`.
 std::string behind(const std::string& text, const std::string& key, const char* ends) {
     const std::size_t found = text.find(key);
     if (found == std::string::npos) return "";
     const std::size_t begin = found + key.size(), end = text.find_first_of(ends, begin);
     return end == std::string::npos ? "" : text.substr(begin, end - begin);
-}
-
-// "\x93NUMPY", version, length of a header such as {'descr': '<f4', 'fortran_order': False, 'shape': (56, 48, 40), }
-// (numpy.lib.format).
-std::optional<RawAdvice> npyAdvice(const fs::path& path) {
-    const std::string bytes = start(path, 1024);
-    if (bytes.compare(0, 6, "\x93NUMPY") != 0) return std::nullopt;
-    const bool swap = std::endian::native == std::endian::big;
-    RawAdvice advice;
-    advice.headerBytes = bytes[6] == 1 ? 10 + std::int64_t{at<std::uint16_t>(bytes, 8, swap)}
-                                       : 12 + std::int64_t{at<std::uint32_t>(bytes, 8, swap)};
-    static const std::map<std::string, const char*> types = {
-        {"i1", "int8"},  {"u1", "uint8"},  {"b1", "uint8"},   {"i2", "int16"},  {"u2", "uint16"},
-        {"i4", "int32"}, {"u4", "uint32"}, {"f4", "float32"}, {"f8", "float64"}};
-    const std::string type = behind(bytes, "'descr': '", "'");
-    if (type.size() == 3 && types.contains(type.substr(1))) advice.type = types.at(type.substr(1));
-    advice.bigEndian = type.starts_with('>');
-    std::string shape = behind(bytes, "'shape': (", ")");
-    std::replace(shape.begin(), shape.end(), ',', ' ');
-    char* next = shape.data();
-    for (std::size_t a = 0; a < 3; ++a) advice.size[a] = std::strtoll(next, &next, 10);
-    if (std::string(next).find_first_not_of(' ') != std::string::npos) return std::nullopt;  // four axes
-    if (behind(bytes, "'fortran_order': ", ",") != "True")
-        std::reverse(advice.size.begin(), advice.size.end());
-    return advice;
 }
 
 // "#INRIMAGE-4#{", lines such as XDIM=40, TYPE=unsigned fixed, PIXSIZE=16 bits, CPU=decm; 256 bytes or a multiple.
@@ -147,23 +91,21 @@ struct Foreign {
 };
 
 constexpr Foreign kForeign[] = {
-    {" .step .stp .iges .igs .brep ", "a CAD model of curved faces",
-     "make a mesh of it: gmsh {0} -2 -clcurv 12 -o {1}.stl"},
-    {" .3mf .amf .glb .gltf .fbx .dae .3ds .x3d .blend .ifc .lwo .dxf ",
-     "a 3D model of a format that is not read", "convert it: assimp export {0} {1}.stl"},
+    {" .amf .gltf .fbx .dae .3ds .x3d .blend .ifc .lwo .dxf ", "a 3D model of a format that is not read",
+     "convert it: assimp export {0} {1}.stl"},
     {" .wrl .vrml .u3d .ctm ", "a 3D model of a format that is not read",
      "convert it: meshlabserver -i {0} -o {1}.ply"},
     {" .usd .usda .usdc .usdz .3dm .skp .max .c4d ", "a 3D scene",
      "save it as STL in the program that made it"},
-    {" .sldprt .sldasm .ipt .iam .prt .f3d .x_t .x_b .dwg .catpart .scad .fcstd ", "a CAD model",
+    {" .sldprt .sldasm .ipt .iam .prt .f3d .x_t .x_b .dwg .catpart .scad ", "a CAD model",
      "save it as STL in the program that made it"},
-    {" .vtp .vtu .msh .inp .bdf .med .xdmf .exo .cgns ", "a mesh of a simulation",
+    {" .vtu .msh .inp .bdf .med .xdmf .exo .cgns ", "a mesh of a simulation",
      "take its surface as a mesh of triangles: meshio convert {0} {1}.ply"},
     {" .gii .gifti .pial .white .inflated ", "a surface of FreeSurfer or GIFTI",
      "convert it: mris_convert {0} {1}.stl"},
     {" .las .laz .e57 .pcd .pts .ptx .xyz ", "a cloud of points, without a surface",
      "make a closed mesh of it first, for example by Poisson reconstruction in MeshLab"},
-    {" .vtk .vti .vts .vtr ", "a file of VTK", "save it as .mha or .ply in ParaView or 3D Slicer"},
+    {" .vtk .vts .vtr ", "a file of VTK", "save it as .mha or .ply in ParaView or 3D Slicer"},
     {" .mnc .mnc2 ", "a MINC image", "convert it: mnc2nii {0} {1}.nii"},
     {" .brik .head ", "an AFNI image", "convert it: 3dAFNItoNIFTI -prefix {1}.nii {0}"},
     {" .par .v ", "a scan in a vendor's format", "convert it: dcm2niix {0}"},
@@ -175,10 +117,6 @@ constexpr Foreign kForeign[] = {
      "convert it: bfconvert {0} {1}.ome.tif"},
     {" .mat .npz .pkl .pt .rds ", "an archive of arrays",
      "save one array as NRRD, for example by pynrrd's nrrd.write()"},
-    {" .npy ", "a NumPy array", "save it as NRRD, for example by pynrrd's nrrd.write()"},
-    {" .mrc .map .ccp4 .st .ali ", "an MRC or CCP4 map of an element type that is not read",
-     "convert it to mode 2: newstack -mode 2 {0} {1}.mrc"},
-    {" .rec ", "a scan in a vendor's format", "convert it to NIfTI (dcm2niix for PAR/REC)"},
     {" .inr ", "an INRIMAGE", "convert it to NIfTI or MetaImage"},
     {" .zip ", "an archive", "unpack it first: unzip {0} -d {1}"},
     {" .tar .tgz .tbz .txz ", "an archive", "unpack it first: tar xf {0}"},
@@ -200,23 +138,10 @@ const Foreign* foreignOf(const std::string& extension) {
     return nullptr;
 }
 
-// A name as a shell takes it.
-std::string inShell(const std::string& name) {
-    const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._/-+,:@";
-    return name.find_first_not_of(plain) == std::string::npos ? name : "'" + name + "'";
-}
-
-std::optional<std::string> withoutHeader(const fs::path& path, const std::string& extension) {
-    const auto text = [](const char* what,
-                         const std::optional<RawAdvice>& advice) -> std::optional<std::string> {
-        if (!advice || !advice->sensible()) return std::nullopt;
-        return fmt::format("is {}; {}", what, advice->text());
-    };
-    if (extension == ".npy") return text("a NumPy array", npyAdvice(path));
-    if (extension == ".inr") return text("an INRIMAGE", inrAdvice(path));
-    const bool map =
-        std::string(" .mrc .map .ccp4 .st .ali .rec ").find(" " + extension + " ") != std::string::npos;
-    return map ? text("an MRC map, with lengths in Angstrom", mrcAdvice(path)) : std::nullopt;
+std::optional<std::string> inrText(const fs::path& path) {
+    const std::optional<RawAdvice> advice = inrAdvice(path);
+    if (!advice || !advice->sensible()) return std::nullopt;
+    return "is an INRIMAGE; " + advice->text();
 }
 
 // A legacy file of VTK is an image or a mesh.
@@ -253,6 +178,7 @@ std::optional<std::string> folderText(const fs::path& folder) {
 std::optional<std::string> foreignText(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return folderText(path);
+    if (const auto text = cadModelText(path)) return text;
     const std::string extension = toLower(path.extension().string());
     const std::string name = inShell(path.string());
     if (extension == ".gz") {
@@ -260,7 +186,8 @@ std::optional<std::string> foreignText(const fs::path& path) {
         if (inner == ".tar") return "is an archive; unpack it first: tar xf " + name;
         return "is compressed by gzip; gunzip it first: gunzip -k " + name;
     }
-    if (const auto text = withoutHeader(path, extension)) return text;
+    if (extension == ".inr")
+        if (const auto text = inrText(path)) return text;
     if (extension == ".vtk")
         if (const auto text = vtkText(path)) return text;
     const Foreign* foreign = foreignOf(extension);

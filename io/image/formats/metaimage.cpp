@@ -202,6 +202,10 @@ void takeVoxels(const fs::path& path, const MetaText& text, std::int64_t needed,
     voxels.encoding = encodingOf(text);
     voxels.bigEndian = text.yes("BinaryDataByteOrderMSB") || text.yes("ElementByteOrderMSB");
     const std::vector<std::string> files = voxelFiles(path, text);
+    if (isLocal(text) && isGzip(path)) {
+        putBehindHeader(voxels, path, text.end, !text.field.contains("HeaderSize"));
+        return;
+    }
     if (isLocal(text)) {
         voxels.pieces = {pieceOf(path, name, text, text.end, needed)};
     } else if (files.empty() || files[0].empty()) {

@@ -26,12 +26,10 @@ class MghBytes {
     explicit MghBytes(const fs::path& path) {
         gzFile file = gzopen(path.c_str(), "rb");
         const int held = file ? gzread(file, bytes_.data(), kFieldBytes) : 0;
-        gzip_ = file && gzdirect(file) == 0;
         if (file) gzclose(file);
         if (held < static_cast<int>(kFieldBytes))
             throw InputError(path.string(), "is shorter than an MGH header; it is truncated or no MGH image");
     }
-    bool gzip() const { return gzip_; }
     template <class T>
     T at(std::size_t offset) const {
         std::array<char, sizeof(T)> value;
@@ -45,7 +43,6 @@ class MghBytes {
 
   private:
     std::array<char, kFieldBytes> bytes_{};
-    bool gzip_ = false;
 };
 
 // At 28: goodRASFlag; 30: voxel sizes; 42: the directions of the three axes, RAS; 78: the world position of the middle,
@@ -103,9 +100,7 @@ StoredVolume readMghHeader(const fs::path& path) {
     placeMgh(bytes, header);
     volume.voxels.outer = size[3];
     volume.voxels.bigEndian = true;
-    volume.voxels.encoding = bytes.gzip() ? Encoding::deflated : Encoding::raw;
-    volume.voxels.pieces = {VoxelPiece{path, bytes.gzip() ? 0 : std::int64_t{kHeaderBytes},
-                                       bytes.gzip() ? std::int64_t{kHeaderBytes} : 0}};
+    putBehindHeader(volume.voxels, path, kHeaderBytes);
     volume.promise = fmt::format("its header says {}", sizesText(size));
     return volume;
 }

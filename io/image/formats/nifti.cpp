@@ -2,7 +2,6 @@
 #include "io/image/formats/nifti.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -24,19 +23,13 @@ namespace {
 
 constexpr std::int32_t kLength1 = 348, kLength2 = 540;
 
-bool isGzip(const fs::path& path) {
-    unsigned char magic[2] = {};
-    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(magic), 2);
-    return magic[0] == 0x1F && magic[1] == 0x8B;
-}
-
 // The first bytes of a file, inflated if need be.
 class NiftiBytes {
   public:
     explicit NiftiBytes(const fs::path& path) {
-        gzFile file = gzopen(path.c_str(), "rb");  // gzread() reads plain files as they are
-        held_ = file ? std::max(0, gzread(file, bytes_.data(), kLength2)) : 0;
-        if (file) gzclose(file);
+        const std::string start = firstBytes(path, kLength2);
+        std::copy(start.begin(), start.end(), bytes_.begin());
+        held_ = static_cast<int>(start.size());
         const auto length = at<std::int32_t>(0);
         swap_ = length != kLength1 && length != kLength2;
     }
@@ -61,6 +54,7 @@ class NiftiBytes {
 // The fields that count, of either version.
 struct NiftiFields {
     bool bigEndian = false, pair = false;
+    bool analyze = false;            // Analyze 7.5, which knows neither forms nor units
     std::int64_t firstVoxel = 0;     // vox_offset, at least behind the header
     std::vector<std::int64_t> size;  // dim[1] .. dim[dim[0]]
     int type = 0;                    // datatype
@@ -123,14 +117,17 @@ constexpr NiftiPlaces<std::int64_t, double, std::int32_t> kNifti2{.dim = 16,
                                                                   .unit = 500,
                                                                   .intent = 504};
 
-[[noreturn]] void throwAnalyze(const std::string& name) {
-    throw InputError(name,
-                     "is an Analyze 7.5 image, which does not say where left and right are; expected NIfTI; "
-                     "convert it: mri_convert in.hdr out.nii");
+enum class Version { first, second, analyze };
+
+// Named .hdr or .img, compressed or not.
+bool isNamedAsPair(const fs::path& path) {
+    const fs::path plain = toLower(path.extension().string()) == ".gz" ? path.stem() : path.filename();
+    const std::string extension = toLower(plain.extension().string());
+    return extension == ".hdr" || extension == ".img";
 }
 
-// Returns whether it is version 2; pair: voxels are in an .img.
-bool checkMagic(const std::string& name, const NiftiBytes& bytes, bool& pair) {
+// pair: voxels are in an .img.
+Version checkMagic(const std::string& name, const NiftiBytes& bytes, bool& pair) {
     const std::int32_t length = bytes.length();
     if (bytes.held() < (length == kLength2 ? kLength2 : kLength1))
         throw InputError(name, "is shorter than a NIfTI header; it is truncated or no NIfTI file");
@@ -140,9 +137,9 @@ bool checkMagic(const std::string& name, const NiftiBytes& bytes, bool& pair) {
     const std::string magic = second ? bytes.text(4, 4) : bytes.text(344, 4);
     const std::string single(second ? "n+2\0" : "n+1\0", 4), two(second ? "ni2\0" : "ni1\0", 4);
     pair = magic == two;
-    if (magic == single || pair) return second;
-    const std::string extension = toLower(fs::path(name).extension().string());
-    if (!second && (extension == ".hdr" || extension == ".img")) throwAnalyze(name);
+    if (magic == single || pair) return second ? Version::second : Version::first;
+    pair = !second && isNamedAsPair(name);
+    if (pair) return Version::analyze;
     throw InputError(name, fmt::format("is not a NIfTI image: expected '{}' or '{}' at byte {} of its header",
                                        single.c_str(), two.c_str(), second ? 4 : 344));
 }
@@ -151,15 +148,18 @@ NiftiFields fieldsOf(const fs::path& path) {
     const std::string name = path.string();
     const NiftiBytes bytes(path);
     bool pair = false;
-    const bool second = checkMagic(name, bytes, pair);
+    const Version version = checkMagic(name, bytes, pair);
+    const bool second = version == Version::second;
     NiftiFields f = second ? kNifti2.read(bytes) : kNifti1.read(bytes);
     f.pair = pair;
+    f.analyze = version == Version::analyze;
     const auto dimensions =
         second ? bytes.at<std::int64_t>(kNifti2.dim) : bytes.at<std::int16_t>(kNifti1.dim);
     if (dimensions < 1 || dimensions > 7)
         throw InputError(name, fmt::format("its header says {} dimensions; expected 3", dimensions));
     f.unit = (second ? bytes.at<std::int32_t>(kNifti2.unit) : bytes.at<std::uint8_t>(kNifti1.unit)) & 7;
     f.intent = second ? bytes.at<std::int32_t>(kNifti2.intent) : bytes.at<std::int16_t>(kNifti1.intent);
+    if (f.analyze) f.unit = f.intent = f.qformCode = f.sformCode = 0, f.intercept = 0;
     const double offset = second ? static_cast<double>(bytes.at<std::int64_t>(kNifti2.offset))
                                  : static_cast<double>(bytes.at<float>(kNifti1.offset));
     if (!(offset >= 0 && offset < 1e9))
@@ -259,6 +259,15 @@ void remarkOther(const Affine& sform, const NiftiFields& f, const std::string& n
                         most * unit));
 }
 
+// Analyze 7.5: left, front, up ("transverse unflipped"), as nibabel takes it, too.
+Affine analyzeAxes(const NiftiFields& f, Header& header) {
+    header.warnings.push_back(
+        "an Analyze 7.5 image says nothing certain of its orientation; its axes are taken to run to the "
+        "left, to "
+        "the front and up, and may be mirrored");
+    return {{Vec3{-f.pixdim[1], 0, 0}, Vec3{0, f.pixdim[2], 0}, Vec3{0, 0, f.pixdim[3]}}, Vec3{}};
+}
+
 Affine affineOf(const std::string& name, const NiftiFields& f, double unit, Header& header) {
     if (f.sformCode > 0) {
         requireFinite(name, "sform", f.srow[0].data(), 4);
@@ -272,6 +281,8 @@ Affine affineOf(const std::string& name, const NiftiFields& f, double unit, Head
         requireFinite(name, "qform", f.quaternion.data(), f.quaternion.size());
         return qformOf(name, f);
     }
+    header.space = Space::unspecified;
+    if (f.analyze) return analyzeAxes(f, header);
     header.warnings.push_back(
         "says nothing of its orientation (sform_code and qform_code are 0); its axes are taken to run to the "
         "right, to the front and up, and may be mirrored");
@@ -370,7 +381,7 @@ StoredVolume readNiftiHeader(const fs::path& given) {
         throw InputError(name, "is a CIFTI file: values on surfaces, not a volume; expected a volume");
     StoredVolume volume;
     Header& header = volume.header;
-    header.format = "NIfTI";
+    header.format = f.analyze ? "Analyze 7.5" : "NIfTI";
     header.type = typeOf(name, f.type);
     byteCount(name, f.size, static_cast<std::int64_t>(sizeOf(header.type)));
     if (f.size.size() < 3) throwFlat(path, f.size[0], f.size.size() > 1 ? f.size[1] : 1, "");
@@ -383,9 +394,7 @@ StoredVolume readNiftiHeader(const fs::path& given) {
     voxels.outer = volumesBehind(name, f.size);
     const fs::path file = voxelFileOf(path, f.pair);
     if (file != path) requireFile(path, file);
-    const bool gzip = isGzip(file);
-    voxels.encoding = gzip ? Encoding::deflated : Encoding::raw;
-    voxels.pieces = {gzip ? VoxelPiece{file, 0, f.firstVoxel} : VoxelPiece{file, f.firstVoxel, 0}};
+    putBehindHeader(voxels, file, f.firstVoxel);
     volume.promise = fmt::format("its header says {}", sizesText(f.size));
     return volume;
 }

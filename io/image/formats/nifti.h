@@ -1,4 +1,5 @@
-// NIfTI-1 and NIfTI-2, in one file (.nii) or two (.hdr and .img), plain or gzip whatever the name says.
+// NIfTI-1 and NIfTI-2, in one file (.nii) or two (.hdr and .img), plain or gzip whatever the name says; and Analyze 7.5, its
+// forerunner (.hdr and .img): spacing, no orientation, SPM's scale factor where there is one.
 //
 // Where voxels lie, as nifti1.h and nibabel have it: by the sform where sform_code > 0, else by the qform where
 // qform_code > 0, else by pixdim alone (method 1), with a remark, since such a file does not say where left and right are.

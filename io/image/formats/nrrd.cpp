@@ -233,10 +233,12 @@ NrrdSpace spaceOf(const std::string& file, const NrrdText& text) {
     if (name.empty()) {
         space.dimension = static_cast<std::size_t>(
             std::clamp<std::int64_t>(numberOr(file, text, "spacedimension", 3), 1, 16));
-        space.remark = "names no space; its coordinates are taken as LPS";
+        space.remark =
+            "names no space; its coordinates are kept as they are, and do not say where left and right are";
     } else {
-        space.remark = fmt::format(
-            "its space '{}' names no side of the body; its coordinates are taken as LPS", text.get("space"));
+        space.remark =
+            fmt::format("its space '{}' names no side of the body; its coordinates are kept as they are",
+                        text.get("space"));
     }
     return space;
 }
@@ -358,7 +360,10 @@ Vec3 product(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z *
 void placeBySpace(const std::string& file, const NrrdText& text, const NrrdAxes& axes, Header& header) {
     const NrrdSpace space = spaceOf(file, text);
     const Vec3 factor = product(space.sign, unitsOf(text, "spaceunits", "space units", 0, header));
-    if (!space.remark.empty()) header.warnings.push_back(space.remark);
+    if (!space.remark.empty()) {
+        header.warnings.push_back(space.remark);
+        header.space = Space::unspecified;
+    }
     std::array<Vec3, 3> step;
     for (std::size_t a = 0; a < 3; ++a) {
         const std::vector<double>& d = axes.direction[axes.first + a];
@@ -403,9 +408,8 @@ void placeByAxes(const NrrdText& text, const NrrdAxes& axes, Header& header) {
     const std::array<double, 3> spacing = header.spacing;
     place(header, step, origin);
     header.spacing = spacing;  // refused, or healed by a given one, where it is not positive
-    header.warnings.push_back(
-        "names no space; its axes are taken to run to the left, to the back and up (LPS), and may be "
-        "mirrored");
+    header.space = Space::unspecified;
+    header.warnings.push_back("names no space; its axes are taken as x, y, z, and may be mirrored");
 }
 
 // ---- voxels
@@ -474,7 +478,11 @@ void takeVoxels(const fs::path& path, const NrrdText& text, std::int64_t needed,
         requireFile(path, path.parent_path() / file);
         voxels.pieces.push_back(pieceOf(path.parent_path() / file, 0, text, voxels.encoding, needed / count));
     }
-    if (files.empty()) voxels.pieces = {pieceOf(path, text.end, text, voxels.encoding, needed)};
+    if (!files.empty()) return;
+    if (isGzip(path))
+        putBehindHeader(voxels, path, text.end, !text.has("lineskip") && !text.has("byteskip"));
+    else
+        voxels.pieces = {pieceOf(path, text.end, text, voxels.encoding, needed)};
 }
 
 // ---- segmentations of 3D Slicer

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "base/cad_model.h"
 #include "base/file_bytes.h"
 #include "base/text.h"
 #include "io/image/check.h"
@@ -294,6 +295,21 @@ std::int64_t leastCharacters(Encoding encoding, ValueType type, std::int64_t byt
 }
 
 }  // namespace
+
+void putBehindHeader(VoxelLayout& voxels, const fs::path& file, std::int64_t start, bool asItIs) {
+    if (!isGzip(file)) {
+        voxels.pieces = {VoxelPiece{file, start, 0}};
+        return;
+    }
+    if (voxels.encoding != Encoding::raw || !asItIs)
+        throw InputError(
+            file.string(),
+            "is compressed by gzip, and its voxels do not lie in it as they are; gunzip it first: "
+            "gunzip -k " +
+                inShell(file.string()));
+    voxels.encoding = Encoding::deflated;
+    voxels.pieces = {VoxelPiece{file, 0, start}};
+}
 
 std::unique_ptr<VoxelBytes> openVoxelBytes(const VoxelLayout& layout, ValueType type, std::int64_t total) {
     if (layout.pieces.size() == 1) return openPiece(layout, layout.pieces[0], type, total);

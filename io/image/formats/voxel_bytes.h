@@ -29,6 +29,11 @@ struct VoxelLayout {
     std::int64_t outer = 1;  // volumes that lie one after another (axes behind z); one is read
 };
 
+// Voxels behind a header in a file that may itself be compressed by gzip: from byte `start` on, of what it inflates to.
+// Throws InputError where it is, and its voxels are encoded once more or, asItIs false, not counted from the start.
+void putBehindHeader(VoxelLayout& voxels, const std::filesystem::path& file, std::int64_t start,
+                     bool asItIs = true);
+
 class VoxelBytes {
   public:
     virtual ~VoxelBytes() = default;

@@ -114,6 +114,7 @@ Header headerOf(const TiffPage& page, const TiffPlanes& planes) {
     header.type = *page.type;
     header.spacing = {planes.pixel[0], planes.pixel[1], planes.step.value_or(planes.pixel[0])};
     header.hasZSpacing = planes.step.has_value();
+    header.space = Space::unspecified;
     header.warnings = planes.remarks;
     if (page.photometric == kMinIsWhite)
         header.warnings.push_back("0 is white in this TIFF; values are taken as they are stored");

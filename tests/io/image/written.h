@@ -90,4 +90,38 @@ inline std::string nrrdFile(const std::string& lines, const std::string& voxels)
     return "NRRD0005\n" + lines + "\n" + voxels;
 }
 
+// type: "<i2"; shape: "2, 3, 4". NumPy pads its header with blanks to a multiple of 64.
+inline std::string npyFile(const std::string& type, bool fortran, const std::string& shape,
+                           const std::string& elements) {
+    std::string header = fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': ({}), }}", type,
+                                     fortran ? "True" : "False", shape);
+    header.resize(118 - 1, ' ');
+    return std::string("\x93NUMPY\1\0\x76\0", 10) + header + "\n" + elements;
+}
+
+// MRC2014; words are numbered from 1 as its description has them.
+struct MrcFile {
+    std::array<std::int32_t, 3> size{2, 3, 4}, start{}, samples{2, 3, 4}, axes{1, 2, 3};
+    std::array<float, 3> cell{2, 3, 4}, angles{90, 90, 90}, origin{};
+    std::int32_t mode = 1, group = 1, extended = 0;
+    bool bigEndian = false;
+    std::string voxels = std::string(48, '\0');
+
+    std::string file() const {
+        std::string out(1024, '\0');
+        put(out, 1, size), put(out, 4, std::array{mode}), put(out, 5, start), put(out, 8, samples);
+        put(out, 11, cell), put(out, 14, angles), put(out, 17, axes),
+            put(out, 23, std::array{group, extended});
+        put(out, 50, origin);
+        out.replace(208, 8, bigEndian ? std::string("MAP \x11\x11\0\0", 8) : std::string("MAP DD\0\0", 8));
+        return out + std::string(static_cast<std::size_t>(extended), 'x') + voxels;
+    }
+
+  private:
+    template <class T, std::size_t N>
+    void put(std::string& out, std::size_t word, const std::array<T, N>& values) const {
+        out.replace(4 * (word - 1), 4 * N, bytes(std::vector<T>(values.begin(), values.end()), bigEndian));
+    }
+};
+
 }  // namespace isowave::test

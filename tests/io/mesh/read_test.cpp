@@ -569,8 +569,10 @@ TEST(ReadMesh, RefusesGlbThatItCannotRead) {
 }
 
 TEST(ReadMesh, SaysHowToConvertWhatItDoesNotRead) {
-    for (const char* name : {"a.3mf", "a.STEP", "a.stp", "a.fbx", "a.gltf", "a.dae"})
+    for (const char* name : {"a.amf", "a.fbx", "a.gltf", "a.dae"})
         EXPECT_THAT([&] { readMesh(name); }, refuses("export it as STL, OBJ, PLY, OFF or GLB")) << name;
+    for (const char* name : {"a.STEP", "a.stp", "a.igs"})
+        EXPECT_THAT([&] { readMesh(name); }, refuses("make a mesh of it: gmsh")) << name;
 }
 
 TEST(ReadMesh, CutsPolygonsIntoFans) {

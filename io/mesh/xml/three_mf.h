@@ -1,0 +1,19 @@
+// 3MF, what slicers exchange: a zip archive with a model in XML (3MF Core Specification 1.3, 3mf.io).
+//
+// The model's unit counts: coordinates come in mm. An object holds a mesh, or components: other objects, each moved by a
+// transform; what the build lists, moved by its own transforms, is what is printed, and is what is read.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "io/mesh/soup.h"
+
+namespace isowave {
+
+// The triangles of all objects that the build lists, of all objects where it lists none. Colours, materials and names are not
+// kept. Throws InputError: no zip archive or a damaged one, no model in it, XML that is none (with line), a number that is none,
+// an object that is missing or holds itself, models in several files (the production extension).
+PolygonSoup readThreeMf(std::string_view bytes, const std::string& name);
+
+}  // namespace isowave

@@ -1,0 +1,224 @@
+// VTK's .vtp and 3MF: what their files say, and what is taken from it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh/read.h"
+#include "io/mesh/xml/three_mf.h"
+#include "io/mesh/xml/vtp.h"
+#include "isowave/error.h"
+#include "tests/io/mesh/zip.h"
+
+namespace isowave {
+namespace {
+
+using test::zipOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+template <class T>
+std::string bytesOf(const std::vector<T>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+// The message of an InputError, one line that begins with "file"; "" when there is none.
+template <class Read>
+std::string refusal(const Read& read) {
+    try {
+        read();
+        return "";
+    } catch (const InputError& e) {
+        EXPECT_TRUE(std::string(e.what()).starts_with("file: ")) << e.what();
+        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+        return e.what();
+    }
+}
+
+// ---- VTP
+
+std::string vtp(const std::string& piece, const std::string& behind = "") {
+    return "<?xml version=\"1.0\"?>\n<!-- SPACE=RAS -->\n<VTKFile type=\"PolyData\" "
+           "byte_order=\"LittleEndian\">\n<PolyData>" +
+           piece + "</PolyData>" + behind + "</VTKFile>";
+}
+
+std::string ascii(const char* type, const char* name, int components, const std::string& numbers) {
+    return fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">{}</DataArray>\n",
+        type, name, components, numbers);
+}
+
+const std::string kPoints =
+    "<Points>" + ascii("Float32", "Points", 3, "0 0 0  1 0 0  0 1 0  0 0 1") + "</Points>";
+
+std::string polys(const std::string& corners, const std::string& ends, const char* part = "Polys") {
+    return fmt::format("<{0}>{1}{2}</{0}>", part, ascii("Int64", "connectivity", 1, corners),
+                       ascii("Int32", "offsets", 1, ends));
+}
+
+TEST(Vtp, PolygonsOfAllPiecesAreRead) {
+    const std::string piece = "<Piece NumberOfPoints=\"4\" NumberOfPolys=\"2\">" + kPoints +
+                              polys("0 1 2 0 1 2 3", "3 7") + "</Piece>";
+    const PolygonSoup soup = readVtp(vtp(piece + piece), "file");
+    EXPECT_EQ(soup.format, "VTP");
+    EXPECT_EQ(soup.space, "RAS");
+    ASSERT_EQ(soup.points.size(), 8u);
+    EXPECT_EQ(soup.points[7], (Point{0, 0, 1}));
+    EXPECT_THAT(soup.corners, ElementsAre(0, 1, 2, 0, 1, 2, 3, 4, 5, 6, 4, 5, 6, 7));
+    EXPECT_THAT(soup.faceBegin, ElementsAre(0, 3, 7, 10, 14));
+}
+
+TEST(Vtp, StripsTurnEverySecondTriangle) {
+    const std::string piece = "<Piece NumberOfPoints=\"4\" NumberOfStrips=\"1\" NumberOfLines=\"1\">" +
+                              kPoints + polys("0 1 2 3", "4", "Strips") + "</Piece>";
+    const PolygonSoup soup = readVtp(vtp(piece), "file");
+    EXPECT_THAT(soup.corners, ElementsAre(0, 1, 2, 1, 3, 2));
+    EXPECT_THAT(soup.droppedNote(), HasSubstr("lines"));
+}
+
+TEST(Vtp, AppendedArraysAreRead) {
+    const auto element = [](const char* type, const char* name, int components, std::size_t offset) {
+        return fmt::format(
+            "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+            "offset=\"{}\"/>",
+            type, name, components, offset);
+    };
+    const std::string points = bytesOf(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1e-9}),
+                      corners = bytesOf(std::vector<std::int32_t>{0, 1, 3}),
+                      ends = bytesOf(std::vector<std::int64_t>{3});
+    const auto length = [](const std::string& data) {
+        return bytesOf(std::vector<std::uint32_t>{static_cast<std::uint32_t>(data.size())});
+    };
+    const std::string piece = "<Piece NumberOfPoints=\"4\" NumberOfPolys=\"1\"><Points>" +
+                              element("Float64", "Points", 3, 0) + "</Points><Polys>" +
+                              element("Int32", "connectivity", 1, 100) + element("Int64", "offsets", 1, 116) +
+                              "</Polys></Piece>";
+    const PolygonSoup soup =
+        readVtp(vtp(piece, "<AppendedData encoding=\"raw\">_" + length(points) + points + length(corners) +
+                               corners + length(ends) + ends + "</AppendedData>"),
+                "file");
+    EXPECT_FALSE(soup.float32);
+    EXPECT_EQ(soup.points[3], (Point{0, 0, 1e-9}));
+    EXPECT_THAT(soup.corners, ElementsAre(0, 1, 3));
+}
+
+TEST(Vtp, DamageIsRefused) {
+    const auto refused = [](const std::string& attributes, const std::string& cells) {
+        return refusal(
+            [&] { readVtp(vtp("<Piece " + attributes + ">" + kPoints + cells + "</Piece>"), "file"); });
+    };
+    const std::string four = "NumberOfPoints=\"4\" NumberOfPolys=\"1\"";
+    EXPECT_EQ(refused(four, polys("0 1 2", "3")), "");
+    EXPECT_THAT(refused(four, polys("0 1 2", "4")), HasSubstr("'connectivity' breaks off"));
+    EXPECT_THAT(refused(four, polys("0 1 2", "-1")), HasSubstr("offset 0 of its Polys is -1"));
+    EXPECT_THAT(refused(four, ""), HasSubstr("has no array 'offsets' in 'Polys'"));
+    EXPECT_THAT(refused("NumberOfPoints=\"-4\"", ""), HasSubstr("NumberOfPoints is '-4'"));
+    EXPECT_THAT(refused("NumberOfPoints=\"5\"", ""), HasSubstr("'Points' breaks off"));
+    // A corner that no point has is refused by whoever makes triangles of it.
+    const PolygonSoup soup =
+        readVtp(vtp("<Piece " + four + ">" + kPoints + polys("0 1 4", "3") + "</Piece>"), "file");
+    EXPECT_GE(soup.corners[2], soup.points.size());
+    EXPECT_THAT(refusal([] { readVtp("<VTKFile type=\"PolyData\"", "file"); }),
+                HasSubstr("ends within its XML"));
+}
+
+// ---- 3MF
+
+std::string threeMf(const std::string& model) { return zipOf({{"3D/3dmodel.model", model}}); }
+
+const std::string kTetrahedron =
+    "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" "
+    "y=\"2\" z=\"0\"/>"
+    "<vertex x=\"0\" y=\"0\" z=\"3\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle "
+    "v1=\"0\" v2=\"1\" v3=\"3\"/>"
+    "<triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh>";
+
+std::string model(const std::string& resources, const std::string& build,
+                  const std::string& attributes = "") {
+    return "<?xml version=\"1.0\"?><model " + attributes + "><resources>" + resources +
+           "</resources><build>" + build + "</build></model>";
+}
+
+// Six times the volume that the polygons enclose: 6 for the tetrahedron, since 1 * 2 * 3 = 6.
+double sixVolumes(const PolygonSoup& soup) {
+    double sum = 0;
+    for (std::size_t f = 0; f < soup.faceCount(); ++f) {
+        const auto at = [&](std::size_t k) {
+            const Point& p = soup.points[soup.corners[soup.faceBegin[f] + k]];
+            return Vec3{p[0], p[1], p[2]};
+        };
+        sum += dot(at(0), cross(at(1), at(2)));
+    }
+    return sum;
+}
+
+TEST(ThreeMf, TheUnitCounts) {
+    const std::string object = "<object id=\"7\">" + kTetrahedron + "</object>",
+                      item = "<item objectid=\"7\"/>";
+    const PolygonSoup soup = readThreeMf(threeMf(model(object, item)), "file");
+    EXPECT_EQ(soup.format, "3MF");
+    EXPECT_EQ(soup.faceCount(), 4u);
+    EXPECT_DOUBLE_EQ(sixVolumes(soup), 6);
+    const PolygonSoup inches = readThreeMf(threeMf(model(object, item, "unit=\"inch\"")), "file");
+    EXPECT_EQ(inches.points[1], (Point{25.4, 0, 0}));
+    EXPECT_THAT(refusal([&] { readThreeMf(threeMf(model(object, item, "unit=\"mile\"")), "file"); }),
+                HasSubstr("unit is 'mile'"));
+}
+
+TEST(ThreeMf, TheBuildIsReadWithItsComponentsAndTransforms) {
+    const std::string objects =
+        "<object id=\"1\">" + kTetrahedron +
+        "</object><object id=\"2\"><components><component objectid=\"1\"/>"
+        "<component objectid=\"1\" transform=\"2 0 0 0 1 0 0 0 1 10 20 30\"/></components></object>"
+        "<object id=\"3\">" +
+        kTetrahedron + "</object>";
+    const PolygonSoup soup = readThreeMf(
+        threeMf(model(objects, "<item objectid=\"2\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 5\"/>")), "file");
+    EXPECT_EQ(soup.faceCount(), 8u);
+    EXPECT_EQ(soup.points[1], (Point{-1, 0, 5}));
+    EXPECT_EQ(soup.points[5], (Point{-12, 20, 35}));
+    // Twice as wide, and still outside out though the item is mirrored.
+    EXPECT_NEAR(sixVolumes(soup), 6 + 12, 1e-9);
+    // Without a build all objects.
+    EXPECT_EQ(readThreeMf(threeMf(model(objects, "")), "file").faceCount(), 4u + 8u + 4u);
+}
+
+TEST(ThreeMf, TheRelationSaysWhereTheModelIs) {
+    const std::string relations =
+        "<Relationships><Relationship Target=\"/3D/part.model\" Id=\"a\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+    const std::string text =
+        model("<object id=\"1\">" + kTetrahedron + "</object>", "<item objectid=\"1\"/>");
+    EXPECT_EQ(readThreeMf(zipOf({{"_rels/.rels", relations}, {"3D/part.model", text}}), "file").faceCount(),
+              4u);
+    EXPECT_THAT(refusal([&] {
+                    readThreeMf(zipOf({{"_rels/.rels", relations}}), "file");
+                }),
+                HasSubstr("has no part '3D/part.model'"));
+}
+
+TEST(ThreeMf, DamageIsRefused) {
+    const auto refused = [](const std::string& text) {
+        return refusal([&] { readThreeMf(threeMf(text), "file"); });
+    };
+    const std::string object = "<object id=\"1\">" + kTetrahedron + "</object>";
+    EXPECT_THAT(refused("<model>"), HasSubstr("line 1 of its model is no XML"));
+    EXPECT_THAT(refused("<a/>"), HasSubstr("is no model"));
+    EXPECT_THAT(refused(model(object, "<item objectid=\"2\"/>")), HasSubstr("has no object '2'"));
+    EXPECT_THAT(refused(model(object + object, "")), HasSubstr("a second object 1"));
+    EXPECT_THAT(
+        refused(model("<object id=\"1\"><component objectid=\"1\"/></object>", "<item objectid=\"1\"/>")),
+        HasSubstr("hold each other without end"));
+    EXPECT_THAT(refused(model("<object id=\"1\"><vertex x=\"a\"/></object>", "")),
+                HasSubstr("x is 'a'; expected a number"));
+    EXPECT_THAT(refused(model(object, "<item objectid=\"1\" transform=\"1 2\"/>")),
+                HasSubstr("expected 12 numbers"));
+    EXPECT_THAT(refused(model(object, "<item objectid=\"1\" p:path=\"/b.model\" xmlns:p=\"p\"/>")),
+                HasSubstr("production extension"));
+    const std::string whole = threeMf(model(object, "<item objectid=\"1\"/>"));
+    for (std::size_t length = 1; length < whole.size(); ++length)
+        EXPECT_NE(refusal([&] { readThreeMf(whole.substr(0, length), "file"); }), "") << length;
+}
+
+}  // namespace
+}  // namespace isowave
