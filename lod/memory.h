@@ -7,11 +7,10 @@
 namespace isowave::lod {
 
 // What lod takes at its peak, beside the 60 MB that the program needs anyway; docs/volume.md has the runs.
-// Distance fit, for each lattice point of the distances' band. Seen: 44 to 74 a control point, of which there are fewer,
-// for TR12J at 400, 256 and 128 voxels.
-inline constexpr double kBytesPerBandPoint = 80;
-// The same of images. Seen: 109 and 118 for balls of grey voxels, 400 and 120 across.
-inline constexpr double kBytesPerImageBandPoint = 120;
+// Distance fit, for each lattice point of the distances' band. Seen: 153 and 218 for TR12J and the bunny at 256 voxels.
+inline constexpr double kBytesPerBandPoint = 220;
+// The same of images. Seen: 105 and 110 for a smooth part in 512^3 and 256^3 voxels, 214 for a head CT, whose surface is rough.
+inline constexpr double kBytesPerImageBandPoint = 220;
 // Binary fit, for each node. Seen: 275 and 312 for bench/make_volume's 512^3 and 256^3.
 inline constexpr double kBytesPerNode = 320;
 
