@@ -78,6 +78,7 @@ class Maker {
     void visit(int step, const BSplineField& field) {
         if (vanished_ || !choice_.visits(step)) return;
         const double begin = clock_.secondsSoFar();
+        if (choice_.isKept(step) && step != 0 && !choice_.has(step)) return mesher_.prepare(step, field);
         LevelMesh made = mesher_.make(step, field);
         vanished_ = made.mesh.triangles.empty();
         if (step == 0) {
@@ -112,6 +113,7 @@ class Maker {
         const StageClock::Scope scope(clock_, "measure");
         if (vanished_) return;
         putDistances(report, made.mesh);
+        putRegionDistances(report, made);
         if (report.step == 0) putInputDistance(report, made.mesh);
         if (deviation_) putDeviation(report, made, progress_);
     }
@@ -132,6 +134,20 @@ class Maker {
         report.maxToLevel0 = distances.toReference.max;
         report.rmsFromLevel0 = distances.fromReference.rms;
         report.maxFromLevel0 = distances.fromReference.max;
+    }
+
+    // REQUIRES: putDistances() before.
+    void putRegionDistances(LevelReport& report, const LevelMesh& made) const {
+        if (!report.regions || !target_) return;
+        RegionSummary& regions = *report.regions;
+        const auto measure = [&](bool inside, std::optional<double>& rms, std::optional<double>& max) {
+            const TriangleMesh part = partOf(made.mesh, made.places, inside);
+            if (part.triangles.empty()) return;
+            const OneSidedDistance distance = target_->distanceFrom(part, progress_);
+            rms = distance.rms, max = distance.max;
+        };
+        measure(true, regions.rmsInside, regions.maxInside);
+        measure(false, regions.rmsOutside, regions.maxOutside);
     }
 
     void putInputDistance(LevelReport& report, const TriangleMesh& level0) {
@@ -218,6 +234,11 @@ PyramidCounts climb(Solid solid, const StepChoice& choice, Maker& maker, const P
                                          : descendFrom(std::move(solid), choice, maker, progress, clock);
     if (maker.empty()) throw InputError(name, "has no surface; nothing to polygonize");
     if (choice.first() > counts.steps) throw InputError(name, tooFarText(choice.first(), counts.steps));
+    if (choice.lastKept() >= counts.steps)
+        throw InputError(name,
+                         fmt::format("the ladder ends at step {}, and no level is coarser than level {}, "
+                                     "which a region of --fine keeps; give it a finer one",
+                                     counts.steps, choice.lastKept() / kStepsPerLevel));
     if (choice.last() && *choice.last() > counts.steps)
         progress.say(fmt::format("{}: {} step {}", name,
                                  counts.coarsestControlPoints == kControlPointsOfOneNode
@@ -237,6 +258,8 @@ Ladder makeLadder(Solid solid, const LevelOptions& options, const LadderVisitor&
 
 Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOptions& options,
                   const LadderVisitor& visitor, const Progress& progress) {
+    if (budgetOptions.any() && !options.fine.empty())
+        throw UsageError("--fine and budgets exclude each other: a budget chooses among whole levels");
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
     const std::optional<lod::Border> border = state.openBorder;
@@ -270,8 +293,10 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
     const double begin = clock.secondsSoFar();
     lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, lod::truthOf(solid),
                             progress, clock);
-    if (step != 0 && mesher.needsLevel0())
-        mesher.make(0, state.field ? *state.field : lod::fieldOf(*state.pyramid, 0, name, progress));
+    if (!options.fine.empty() && step % kStepsPerLevel != 0)
+        throw UsageError(fmt::format("--fine needs a level: step {} is not 3 L", step));
+    for (const int before : mesher.stepsBefore(step))
+        mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));
     const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
     lod::LevelMesh made = mesher.make(step, field);
     if (made.mesh.triangles.empty())

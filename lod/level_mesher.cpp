@@ -1,4 +1,5 @@
 // make = hold what is thin -> choose the iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at the border -> count -> tell
+//        -> where a region keeps a finer level, blend its field in, and the same again from polygonize on
 // sampling = polygonize the same field finer -> remove specks -> count
 #include "lod/level_mesher.h"
 
@@ -29,7 +30,8 @@ SolidCounts countsOf(const MeshTopology& topology) {
 }
 
 bool needsLevel0(const LevelOptions& options) {
-    return options.preserveVolume || options.hold != Holding::none || options.features || options.refit;
+    return options.preserveVolume || options.hold != Holding::none || options.features || options.refit ||
+           !options.fine.empty();
 }
 
 namespace lod {
@@ -105,6 +107,8 @@ LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border
       progress_(progress),
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
+    checkRegions(options);
+    if (!options.fine.empty()) regions_.emplace(options.fine, progress);
 }
 
 LevelMesher::~LevelMesher() = default;
@@ -227,7 +231,62 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
         tellWalls(level.report);
         tellDifference(level.report);
     }
+    if (regions_) addRegions(level);
     return level;
+}
+
+void LevelMesher::prepare(int step, const BSplineField& field) {
+    const std::optional<SolidCounts> before = before_;
+    make(step, field);
+    if (before) before_ = before;
+}
+
+std::vector<int> LevelMesher::stepsBefore(int step) const {
+    std::vector<int> steps = stepsOf(options_.fine);
+    std::erase_if(steps, [step](int s) { return s >= step; });
+    if (needsLevel0() && step != 0 && (steps.empty() || steps.front() != 0)) steps.insert(steps.begin(), 0);
+    return steps;
+}
+
+void LevelMesher::addRegions(LevelMesh& level) {
+    LevelReport& report = level.report;
+    const StageClock::Scope scope(clock_, "regions");
+    if (report.step == 0 && !report.vanished()) regions_->requireWithin(boxAround(level.mesh));
+    const double smallest = smallestAt(report.step, level.field);
+    regions_->remember(report.step, level.field, report.refine, smallest, progress_);
+    if (report.step <= stepsOf(options_.fine).front()) return;
+    progress_("blending", 0);
+    auto blend = regions_->blended(report.step, level.field, report.refine, smallest, progress_);
+    if (!blend) {
+        if (!std::exchange(toldOfRegions_, true))
+            progress_.say(fmt::format("step {}: nothing in the regions of --fine differs from a finer level",
+                                      report.step));
+        return;
+    }
+    report.regions = blend->summary;
+    putRemoval(level, drawBlended(level, *blend), smallest);
+    level.places = blend->levels.placesOf(level.mesh, progress_);
+    const auto count = [&](LocalLevels::Place place) {
+        return std::count(level.places.begin(), level.places.end(), place);
+    };
+    report.regions->trianglesInside = count(LocalLevels::Place::inside);
+    report.regions->trianglesFading = count(LocalLevels::Place::fading);
+    report.regions->trianglesOutside = count(LocalLevels::Place::outside);
+}
+
+SpeckRemoval LevelMesher::drawBlended(LevelMesh& level, RegionBlend& blend) const {
+    level.field = std::move(blend.field);
+    level.report.refine = options_.refine.value_or(blend.refine);
+    level.mesh = polygonizeAt(level.field, 0, level.report.refine);
+    SpeckRemoval removal;
+    if (!options_.keepSpecks)
+        removal = removeSpecks(level.mesh, blend.levels.smallestAt(level.mesh, progress_));
+    const std::size_t before = level.mesh.triangles.size();
+    blend.levels.collapse(level.mesh, level.report.refine, options_.refine.value_or(1), progress_);
+    if (level.mesh.triangles.size() != before)
+        level.mesh.normals = ZeroSet(level.field, 0).normalsOf(level.mesh, progress_);
+    finish(level);
+    return removal;
 }
 
 LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
@@ -334,7 +393,8 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
     const int step = level.report.step;
     SolidCounts finer = countsOf(level.report.topology);
     int refine = level.report.refine;
-    if (step == 0 || openBorder_ || refine == kFinestRefine || !isMore(finer, before)) return std::nullopt;
+    if (step == 0 || openBorder_ || refine == kFinestRefine || level.report.regions || !isMore(finer, before))
+        return std::nullopt;
     const StageClock::Scope scope(clock_, "sampling");
     // A lattice point of level 0 and one of this level, refined so often, are equally dense.
     const int finest =
@@ -406,11 +466,16 @@ SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest, TriangleMesh r
     if (level.report.step == 0) rememberLevel0(level.field, level.mesh, refine);
     SpeckRemoval removal = removeSpecks(level.mesh, smallest);
     if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
+    finish(level);
+    return removal;
+}
+
+// What comes last, whatever the mesh was made of.
+void LevelMesher::finish(LevelMesh& level) const {
     if (options_.relax > 0) relax(level.mesh, ZeroSet(level.field, level.iso), options_.relax, progress_);
     if (openBorder_)
         level.mesh = clipToBox(level.mesh, openBorder_->worldToIndex, openBorder_->low, openBorder_->high);
     level.report.topology = topologyOf(level.mesh);
-    return removal;
 }
 
 LevelMesher::Sampled LevelMesher::sampled(int step, const BSplineField& field) {
@@ -465,16 +530,19 @@ void LevelMesher::drawAll(LevelMesh& level, const std::optional<std::vector<doub
                           TriangleMesh ready) {
     LevelReport& report = level.report;
     const double smallest = smallestAt(report.step, level.field);
-    const SpeckRemoval removal = draw(level, smallest, std::move(ready));
+    putRemoval(level, draw(level, smallest, std::move(ready)), smallest);
+    if (!thin) return;
+    report.thinKept = shareInside(*thin, level.iso);
+    report.thinKeptAtIso0 = shareInside(*thin, 0);
+}
+
+void LevelMesher::putRemoval(LevelMesh& level, const SpeckRemoval& removal, double smallest) const {
+    LevelReport& report = level.report;
     report.specksRemoved = removal.specks;
     report.speckVolume = removal.speckVolume;
     report.bubblesRemoved = removal.bubbles;
     report.bubbleVolume = removal.bubbleVolume;
     putIso(level, smallest);
-    if (thin) {
-        report.thinKept = shareInside(*thin, level.iso);
-        report.thinKeptAtIso0 = shareInside(*thin, 0);
-    }
     putFeatures(level, removal);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/stage_clock.h"
 #include "isowave/ladder.h"
+#include "lod/regions/fine_regions.h"
 #include "lod/solid_state.h"
 #include "polygonize/specks.h"
 
@@ -23,10 +24,12 @@ struct InputTruth {
 };
 
 struct LevelMesh {
-    BSplineField field;  // that of the step, or what `refit` made of it
-    TriangleMesh mesh;   // cut off at an open border
-    double iso = 0;      // of the field
-    LevelReport report;  // step, topology, refine ... features: what make() knows
+    // That of the step, or what `refit` made of it; with regions blended into it on the finest region's lattice.
+    BSplineField field;
+    TriangleMesh mesh;                            // cut off at an open border
+    double iso = 0;                               // of the field
+    LevelReport report;                           // step, topology, refine ... features: what make() knows
+    std::vector<LocalLevels::Place> places = {};  // of triangles; empty without regions
 };
 
 class LevelMesher {
@@ -43,7 +46,12 @@ class LevelMesher {
     bool needsLevel0() const { return isowave::needsLevel0(options_) || wantsThin_; }
     // Sampled as options say, else as finely as it takes: level 0 for the input's parts, handles, cavities and volume, the
     // others for what is thin and for no more parts, handles and cavities than level 0 has.
+    // Regions that keep a finer level are blended in at last, so that levels limit each other as they do without.
     LevelMesh make(int step, const BSplineField& field);
+    // A level that nobody asked for, which regions of coarser ones keep: those are not limited by what it has.
+    void prepare(int step, const BSplineField& field);
+    // The steps that make() or prepare() must have seen before this one, which is not among them; ascending.
+    std::vector<int> stepsBefore(int step) const;
 
     // Of which kind are the parts, handles and cavities that a level has beyond those of the level before? Those that
     // a finer lattice does not find in the same field are the mesh's sampling; the others are the field's own. The
@@ -71,6 +79,10 @@ class LevelMesher {
     LevelMesh withoutGaps(LevelMesh level, int step, const BSplineField& field);
     void limit(LevelMesh& level);
     void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin, TriangleMesh ready = {});
+    void putRemoval(LevelMesh& level, const SpeckRemoval& removal, double smallest) const;
+    void addRegions(LevelMesh& level);
+    SpeckRemoval drawBlended(LevelMesh& level, RegionBlend& blend) const;
+    void finish(LevelMesh& level) const;
     LevelMesh madeAt(Sampled sampled, int step, const BSplineField& field);
     bool holds(int step) const;
     bool mustFall(int step) const;
@@ -100,6 +112,8 @@ class LevelMesher {
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;
+    std::optional<FineRegions> regions_;
+    bool toldOfRegions_ = false;
 };
 
 }  // namespace isowave::lod

@@ -63,6 +63,8 @@ class ReferenceSurface {
     };
     virtual ~ReferenceSurface() = default;
     virtual Distances distances(const TriangleMesh& mesh, const Progress& progress) const = 0;
+    // The first of the two; mesh: closed or not.
+    virtual OneSidedDistance distanceFrom(const TriangleMesh& mesh, const Progress& progress) const = 0;
 };
 // REQUIRES: canMeasureDistances(); at least one triangle.
 std::unique_ptr<ReferenceSurface> makeReferenceSurface(TriangleMesh mesh);

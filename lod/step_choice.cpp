@@ -2,6 +2,7 @@
 
 #include "isowave/error.h"
 #include "lod/option_checks.h"
+#include "lod/regions/fine_regions.h"
 
 namespace isowave {
 namespace {
@@ -20,6 +21,7 @@ void checkRanges(const LevelOptions& options) {
         throw UsageError("--levels and --steps exclude each other; level L is step 3L");
     requireSteps("--levels", options.levels);
     requireSteps("--steps", options.steps);
+    lod::checkRegions(options);
 }
 
 namespace lod {
@@ -32,6 +34,7 @@ StepChoice::StepChoice(const LevelOptions& options, bool budgets)
     const StepRange range = options.steps ? *options.steps : options.levels.value_or(StepRange{});
     first_ = range.first * stride_;
     if (range.last) last_ = *range.last * stride_;
+    kept_ = stepsOf(options.fine);
 }
 
 }  // namespace lod

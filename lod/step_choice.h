@@ -1,7 +1,9 @@
 // Which steps are asked for, and which are looked at.
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "isowave/ladder.h"
 
@@ -17,7 +19,11 @@ class StepChoice {
         return levels_ && step >= first_ && (!last_ || step <= *last_) && step % stride_ == 0;
     }
     // Whether the step is looked at, be it asked for or not.
-    bool visits(int step) const { return all_ || step == 0 || has(step); }
+    bool visits(int step) const { return all_ || step == 0 || has(step) || isKept(step); }
+    // Whether a region of coarser levels keeps the step's level.
+    bool isKept(int step) const { return std::find(kept_.begin(), kept_.end(), step) != kept_.end(); }
+    // The coarsest of them; -1: there is none.
+    int lastKept() const { return kept_.empty() ? -1 : kept_.back(); }
     int first() const { return first_; }
     std::optional<int> last() const { return last_; }
     std::optional<int> lastVisited() const { return all_ ? std::nullopt : last_; }
@@ -27,6 +33,7 @@ class StepChoice {
     int stride_;
     int first_ = 0;
     std::optional<int> last_;
+    std::vector<int> kept_;
 };
 
 }  // namespace isowave::lod

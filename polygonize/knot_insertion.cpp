@@ -149,6 +149,12 @@ openvdb::BoolTree::Ptr signsOf(const openvdb::FloatTree& controlPoints, const Pr
 
 }  // namespace
 
+Shape::Ptr shapeOf(const openvdb::FloatGrid& controlPoints, const Progress& progress) {
+    Shape::Ptr shape = Shape::create(signsOf(controlPoints.tree(), progress));
+    shape->setTransform(controlPoints.transform().copy());
+    return shape;
+}
+
 BSplineField insertKnots(const BSplineField& field, const Progress& progress) {
     openvdb::FloatTree::ConstPtr coarse = field.controlPoints->constTreePtr();
     if (coarse->hasActiveTiles()) {
@@ -162,10 +168,8 @@ BSplineField insertKnots(const BSplineField& field, const Progress& progress) {
     BSplineField fine;
     fine.K = field.K;
     fine.controlPoints = openvdb::FloatGrid::create(fineControlPoints(*coarse, progress));
-    fine.shape = Shape::create(signsOf(fine.controlPoints->tree(), progress));
-    for (openvdb::GridBase::Ptr grid :
-         {openvdb::GridBase::Ptr(fine.controlPoints), openvdb::GridBase::Ptr(fine.shape)})
-        grid->setTransform(transform->copy());
+    fine.controlPoints->setTransform(transform);
+    fine.shape = shapeOf(*fine.controlPoints, progress);
     fine.controlPoints->setName(field.controlPoints->getName());
     fine.controlPoints->setGridClass(field.controlPoints->getGridClass());
     if (field.shape) fine.shape->setName(field.shape->getName());

@@ -14,4 +14,7 @@ namespace isowave {
 // shape are those of F at the fine lattice points, there being no input between the coarse ones.
 BSplineField insertKnots(const BSplineField& field, const Progress& progress = {});
 
+// The shape of a field that has none yet: known where control points are active, inside where F < 0 at the lattice point.
+Shape::Ptr shapeOf(const openvdb::FloatGrid& controlPoints, const Progress& progress = {});
+
 }  // namespace isowave

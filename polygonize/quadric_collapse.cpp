@@ -23,14 +23,20 @@ using namespace collapse;
 
 constexpr double kBlockSide = 48, kCellSide = 2;  // mean edges
 
-// Of a sample of triangles: every k-th.
-double meanEdge(const TriangleMesh& mesh) {
+bool isKept(const std::vector<char>& kept, const Triangle& t) {
+    return !kept.empty() && kept[t[0]] && kept[t[1]] && kept[t[2]];
+}
+
+// Of a sample of triangles: every k-th, if it is not kept.
+double meanEdge(const TriangleMesh& mesh, const std::vector<char>& kept) {
     constexpr std::size_t kSample = 1 << 16;
     const std::size_t stride = mesh.triangles.size() / kSample + 1;
     double sum = 0;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride, ++count) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
         const Triangle& t = mesh.triangles[i];
+        if (isKept(kept, t)) continue;
+        ++count;
         for (int k = 0; k < 3; ++k)
             sum += length(toVec3(mesh.points[t[(k + 1) % 3]]) - toVec3(mesh.points[t[k]]));
     }
@@ -40,7 +46,10 @@ double meanEdge(const TriangleMesh& mesh) {
 class Collapsing {
   public:
     Collapsing(TriangleMesh& mesh, const CollapseOptions& options, const Progress& progress)
-        : mesh_(mesh), progress_(progress), wanted_(static_cast<std::int64_t>(mesh.triangles.size())) {
+        : mesh_(mesh),
+          kept_(options.kept),
+          progress_(progress),
+          wanted_(static_cast<std::int64_t>(mesh.triangles.size())) {
         wanted_ = std::max<std::int64_t>(0, (wanted_ - options.triangles + 1) / 2);
         if (options.longest > 0) limits_.longest2 = options.longest * options.longest;
         if (options.deviation > 0) limits_.deviation2 = options.deviation * options.deviation;
@@ -81,7 +90,7 @@ class Collapsing {
     // The blocks of a round, and the triangles that overlap each.
     void cut(int round) {
         constexpr std::array<double, 4> kShift{0, 0.5, 0.25, 0.75};  // of a block
-        const double edge = meanEdge(mesh_);
+        const double edge = meanEdge(mesh_, kept_);
         cell_ = kCellSide * edge;
         layBlocks(kBlockSide * edge, kShift[static_cast<std::size_t>(round) % kShift.size()]);
         first_.assign(blocks_.size() + 1, 0);
@@ -129,8 +138,8 @@ class Collapsing {
                           z = static_cast<std::size_t>(blocks_.count[2]);
         const Cell cell{static_cast<int>(index / (y * z)), static_cast<int>(index / z % y),
                         static_cast<int>(index % z)};
-        block.load(mesh_, quadrics_, first, &listed_[0] + first_[index], &listed_[0] + first_[index + 1],
-                   blocks_, cell, cell_);
+        block.load(mesh_, kept_, quadrics_, first, &listed_[0] + first_[index],
+                   &listed_[0] + first_[index + 1], blocks_, cell, cell_);
     }
 
     // Collapses some of the blocks, in copies, farther than all are to be. Returns the cost up to which about
@@ -198,6 +207,7 @@ class Collapsing {
     }
 
     TriangleMesh& mesh_;
+    const std::vector<char>& kept_;
     const Progress& progress_;
     std::int64_t wanted_;  // collapses
     Limits limits_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "isowave/mesh.h"
 #include "isowave/progress.h"
@@ -16,6 +17,8 @@ struct CollapseOptions {
     // for; 0: at any distance. Planar parts collapse as far as their outline allows. It is no bound of the largest
     // distance: measure that.
     double deviation = 0;
+    // By point, not 0: it stays where it is, and no edge at it is collapsed. Empty: none stays.
+    std::vector<char> kept = {};
 };
 
 struct CollapseReport {
@@ -38,10 +41,11 @@ struct CollapseReport {
 //     edge is long; then the edge's middle is taken.
 // (4) No triangle turns by more than 75 degrees in one collapse (needles are compared with their neighbourhood), and none
 //     becomes a needle (height below 0.05 of the longest side) that is thinner than the thinnest one around.
+// (5) Points that are kept stay, to the bit, and so do the triangles that have kept corners only.
 // Triangles that stay keep their order, and points theirs. Normals are cleared: the new vertices lie near the surface that
 // the mesh was made of, not on it, and the caller knows where its normals come from.
 // The same result, to the bit, for any number of threads. Memory: 240 bytes a vertex of the input.
-// REQUIRES: closed, oriented, 2-manifold; finite points; fewer than 2^31 triangles.
+// REQUIRES: closed, oriented, 2-manifold; finite points; fewer than 2^31 triangles; kept: empty or one a point.
 void collapseByQuadrics(TriangleMesh& mesh, const CollapseOptions& options, CollapseReport* report = nullptr,
                         const Progress& progress = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isowave {
 
@@ -9,15 +10,16 @@ double nodeVolume(const openvdb::math::Transform& transform) {
     return std::abs(transform.baseMap()->getAffineMap()->getMat4().getMat3().det());
 }
 
-std::vector<bool> areSpecks(const std::vector<double>& volumes, double smallest) {
+namespace {
+
+// smallest: of each component.
+std::vector<bool> areSpecks(const std::vector<double>& volumes, const std::vector<double>& smallest) {
     std::vector<bool> result(volumes.size());
-    for (std::size_t i = 0; i < volumes.size(); ++i) result[i] = std::abs(volumes[i]) < smallest;
+    for (std::size_t i = 0; i < volumes.size(); ++i) result[i] = std::abs(volumes[i]) < smallest[i];
     const auto largest = std::max_element(volumes.begin(), volumes.end());  // the first one of several
     if (largest != volumes.end()) result[static_cast<std::size_t>(largest - volumes.begin())] = false;
     return result;
 }
-
-namespace {
 
 // Of the components that are wanted, in their order.
 std::vector<PointBox> boxesOf(const TriangleMesh& mesh, const MeshComponents& components,
@@ -32,13 +34,9 @@ std::vector<PointBox> boxesOf(const TriangleMesh& mesh, const MeshComponents& co
     return boxes;
 }
 
-}  // namespace
-
-SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest) {
+SpeckRemoval removeThese(TriangleMesh& mesh, const MeshComponents& components,
+                         const std::vector<bool>& isSpeck) {
     SpeckRemoval removal;
-    if (!(smallest > 0)) return removal;
-    const MeshComponents components = componentsOf(mesh);
-    const std::vector<bool> isSpeck = areSpecks(components.volume, smallest);
     for (std::size_t i = 0; i < components.count(); ++i) {
         if (!isSpeck[i]) continue;
         const double volume = components.volume[i];
@@ -64,6 +62,27 @@ SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest) {
             mesh.triangles[out++] = {renamed[t[0]], renamed[t[1]], renamed[t[2]]};
     mesh.triangles.resize(out);
     return removal;
+}
+
+}  // namespace
+
+std::vector<bool> areSpecks(const std::vector<double>& volumes, double smallest) {
+    return areSpecks(volumes, std::vector<double>(volumes.size(), smallest));
+}
+
+SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest) {
+    if (!(smallest > 0)) return {};
+    const MeshComponents components = componentsOf(mesh);
+    return removeThese(mesh, components, areSpecks(components.volume, smallest));
+}
+
+SpeckRemoval removeSpecks(TriangleMesh& mesh, const std::vector<double>& smallestAt) {
+    const MeshComponents components = componentsOf(mesh);
+    std::vector<double> smallest(components.count(), std::numeric_limits<double>::infinity());
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (const auto c = components.of[v]; c != MeshComponents::kNone)
+            smallest[c] = std::min(smallest[c], smallestAt[v]);
+    return removeThese(mesh, components, areSpecks(components.volume, smallest));
 }
 
 double volumeWithoutSpecks(const TriangleMesh& mesh, double smallest) {

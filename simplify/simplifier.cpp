@@ -48,9 +48,12 @@ class Reference : public ReferenceSurface {
     explicit Reference(TriangleMesh mesh) : sample_(mesh), target_(std::move(mesh)) {}
 
     Distances distances(const TriangleMesh& level, const Progress& progress) const override {
+        return {distanceFrom(level, progress), sample_.to(DistanceTarget(level), progress)};
+    }
+    OneSidedDistance distanceFrom(const TriangleMesh& level, const Progress& progress) const override {
         OneSidedDistance to = Sample(level).to(target_, progress);
         to.max = target_.farthestSample(level, to.max, progress);
-        return {to, sample_.to(DistanceTarget(level), progress)};
+        return to;
     }
 
   private:

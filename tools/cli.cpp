@@ -30,8 +30,10 @@ std::unique_ptr<ParsedCommand> declare(CLI::App& app, Command& command) {
     parsed->app->add_option("arguments", parsed->arguments)->type_size(1)->expected(0, 1 << 20);
     for (const Option& option : command.options().all()) {
         const std::string names(option.names);
-        parsed->options.emplace_back(&option, option.isFlag() ? parsed->app->add_flag(names)
-                                                              : parsed->app->add_option(names)->expected(1));
+        CLI::Option* const found =
+            option.isFlag() ? parsed->app->add_flag(names) : parsed->app->add_option(names)->expected(1);
+        if (option.repeats) found->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        parsed->options.emplace_back(&option, found);
     }
     return parsed;
 }
@@ -65,7 +67,10 @@ void takeOptions(const ParsedCommand& parsed) {
     for (const auto& [option, found] : parsed.options) {
         if (found->count() == 0) continue;
         try {
-            option->apply(option->isFlag() ? std::string() : found->as<std::string>());
+            if (option->repeats)
+                for (const std::string& value : found->results()) option->apply(value);
+            else
+                option->apply(option->isFlag() ? std::string() : found->as<std::string>());
         } catch (const UsageError& error) {
             throw UsageError(std::string(option->longName()) + ": " + error.what());
         }

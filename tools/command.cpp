@@ -22,6 +22,11 @@ void OptionList::value(std::string_view names, std::string_view metavar, std::st
     options_.push_back({names, metavar, fallback, help, std::move(apply)});
 }
 
+void OptionList::values(std::string_view names, std::string_view metavar, std::string_view help,
+                        std::function<void(const std::string&)> apply) {
+    options_.push_back({names, metavar, "", help, std::move(apply), /*repeats=*/true});
+}
+
 void OptionList::flag(std::string_view names, std::string_view help, bool& set) {
     options_.push_back({names, "", "", help, [&set](const std::string&) { set = true; }});
 }

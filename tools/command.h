@@ -25,6 +25,7 @@ struct Option {
     std::string_view help;
     // Takes the value (empty for a flag). Throws UsageError without naming the option.
     std::function<void(const std::string& value)> apply;
+    bool repeats = false;  // may be given several times: each value is taken, in their order
 
     bool isFlag() const { return metavar.empty(); }
     bool isChoice() const { return metavar.find('|') != metavar.npos; }
@@ -37,6 +38,9 @@ class OptionList {
   public:
     void value(std::string_view names, std::string_view metavar, std::string_view fallback,
                std::string_view help, std::function<void(const std::string&)> apply);
+    // One that may be given several times.
+    void values(std::string_view names, std::string_view metavar, std::string_view help,
+                std::function<void(const std::string&)> apply);
     void flag(std::string_view names, std::string_view help, bool& set);
     // A file that the command reads; main() sees to it that no result takes its place.
     void input(std::string_view names, std::string_view help, std::optional<std::filesystem::path>& set);

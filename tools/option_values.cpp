@@ -29,7 +29,22 @@ std::array<Number, 3> tripleOf(const std::string& text, const char* example, Par
     return result;
 }
 
+Point corner(const std::string& text) {
+    std::vector<double> numbers = list(text, number);
+    if (numbers.size() != 3) throw UsageError("'" + text + "' is not a corner X,Y,Z of a box");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+// "1,2,3", "1,2" or "1,2,x", which was meant to be a corner; no file's name.
+bool looksLikeCorner(const std::string& text) {
+    return text.find(',') != std::string::npos &&
+           text.find_first_not_of("0123456789.,+-eEnaif") == std::string::npos;
+}
+
 int stepNumber(const std::string& text) { return static_cast<int>(integer(text, 0, kMostSteps)); }
+int levelNumber(const std::string& text) {
+    return static_cast<int>(integer(text, 0, kMostSteps / kStepsPerLevel));
+}
 
 }  // namespace
 
@@ -74,6 +89,27 @@ StepRange range(const std::string& text) {
     if (!last.empty()) result.last = stepNumber(last);
     if (result.last && *result.last < result.first)
         throw UsageError("'" + text + "' runs backwards; write the smaller number first");
+    return result;
+}
+
+FineRegion region(const std::string& text) {
+    FineRegion result;
+    const auto first = text.find(':');
+    if (looksLikeCorner(text.substr(0, first))) {
+        if (first == std::string::npos)
+            throw UsageError("'" + text +
+                             "' is one corner; a box is X,Y,Z:X,Y,Z, with :LEVEL behind it or not");
+        const auto second = text.find(':', first + 1);
+        result.where = FineRegion::Box{corner(text.substr(0, first)),
+                                       corner(text.substr(first + 1, second - first - 1))};
+        if (second != std::string::npos) result.level = levelNumber(text.substr(second + 1));
+        return result;
+    }
+    const auto last = text.rfind(':');
+    const bool hasLevel = last != std::string::npos && last + 1 < text.size() &&
+                          text.find_first_not_of("0123456789", last + 1) == std::string::npos;
+    if (hasLevel) result.level = levelNumber(text.substr(last + 1));
+    result.where = place(text.substr(0, hasLevel ? last : std::string::npos));
     return result;
 }
 

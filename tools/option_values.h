@@ -23,6 +23,9 @@ std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t hig
 std::filesystem::path place(const std::string& text);
 // A..B, A.., ..B or A: both ends included.
 StepRange range(const std::string& text);
+// BOX or MESH, then :LEVEL where it is not 0. BOX is X,Y,Z:X,Y,Z; all else is the name of a file, to which the last ":N" does not
+// belong.
+FineRegion region(const std::string& text);
 // AxBxC; commas will do too.
 std::array<double, 3> triple(const std::string& text, const char* example);
 std::array<std::int64_t, 3> wholeTriple(const std::string& text, const char* example);

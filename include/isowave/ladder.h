@@ -13,6 +13,7 @@
 //
 //   each step:  field -> hold what is thin -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
 //               -> count -> measure against level 0
+// With regions that keep a finer level (LevelOptions::fine) the field is blended with that level's before it is polygonized.
 //
 // Distances to level 0, budgets and `compact` need the parts of isowave that CGAL's GPL packages are in (canMeasureDistances
 // in isowave/measure.h). Without them distances are empty and the others a UsageError.
@@ -20,9 +21,11 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "isowave/measure.h"
@@ -49,6 +52,21 @@ enum class Holding {
     none    // not at all: the plain wavelet level
 };
 
+// Two opposite corners, world coordinates.
+struct RegionBox {
+    Point low{}, high{};
+};
+
+// A part of space in which coarser levels keep the details of a finer one: inside, their surface is that level's own, and
+// over one voxel of the coarser level outside the details fade out. One closed mesh, whose triangles follow the local level.
+struct FineRegion {
+    using Box = RegionBox;
+    // A box, or a closed mesh: its file, or its triangles; world coordinates.
+    std::variant<Box, std::filesystem::path, TriangleMesh> where = {};
+    int level = 0;      // the one that is kept; no level up to it changes
+    double within = 0;  // the region is widened by this, world units
+};
+
 // Names in messages are those of the command's options.
 struct LevelOptions {
     std::optional<StepRange> levels = {}, steps = {};  // one of the two; neither: all levels
@@ -66,6 +84,9 @@ struct LevelOptions {
     bool features = false;    // measure parts, holes and cavities of level 0 and tell what became of them
     int relax = 0;            // rounds of sliding vertices along the surface
     bool deviation = false;   // measure triangles against the zero set
+    // Where levels keep the details of finer ones; where regions overlap the finest counts. Needs levels, not steps or budgets,
+    // at iso-value 0.
+    std::vector<FineRegion> fine = {};
 };
 
 // Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
@@ -135,6 +156,17 @@ struct WallThickness {
     std::optional<int> heldUpTo;
 };
 
+// What the regions of LevelOptions::fine are to a level. `inside`: where all control points that the surface depends on are
+// those of a region's level; `fading`: where some are a mixture of both; `outside`: where all are the level's own.
+struct RegionSummary {
+    // Control points: those of the regions' levels, up to where they have faded out, and the level's own that are not replaced
+    // by them.
+    std::int64_t finePoints = 0, coarsePoints = 0;
+    std::int64_t trianglesInside = 0, trianglesFading = 0, trianglesOutside = 0;
+    // From this mesh to level 0, world units, as LevelReport::rmsToLevel0: of the triangles inside, and of all others.
+    std::optional<double> rmsInside, maxInside, rmsOutside, maxOutside;
+};
+
 // A cut or a fill that made a level's topology simpler: a hole was filled or its ring cut, a part removed or joined to
 // another, a cavity filled or opened.
 enum class SolidFeature { part, handle, cavity };
@@ -172,7 +204,8 @@ struct LevelReport {
         volumeError;  // volume / input.volume - 1, or / level 0's - 1 where the input has none
     std::optional<double> thinKept, thinKeptAtIso0;  // share of what is thin that is inside, 0 to 1
     std::vector<WallThickness> walls;                // of level 0 alone, Holding::local
-    std::optional<HoldSummary> hold;  // Holding::local: what it took; nothing where nothing is thin
+    std::optional<HoldSummary> hold;       // Holding::local: what it took; nothing where nothing is thin
+    std::optional<RegionSummary> regions;  // of levels coarser than a region that meets the surface
     std::optional<FeatureReport> features;
 
     std::vector<LevelEdit> edits;             // that limits on the topology asked for
@@ -242,7 +275,7 @@ struct LadderVisitor {
 };
 
 // Throws UsageError for options that exclude each other or have no such value, InputError where the solid has no surface or does not reach
-// the first level asked for, Cancelled.
+// the first level asked for, or a region (LevelOptions::fine) is outside the solid or no closed mesh, Cancelled.
 ISOWAVE_EXPORT Ladder makeLadder(Solid solid, const LevelOptions& options = {},
                                  const LadderVisitor& visitor = {}, const Progress& progress = {});
 
@@ -265,7 +298,8 @@ ISOWAVE_EXPORT std::vector<LevelReport> describeLevels(const Pyramid& pyramid,
 // Whether a level can only be made beside level 0: a pyramid's file must be read as a whole then.
 ISOWAVE_EXPORT bool needsLevel0(const LevelOptions& options);
 
-// Throws UsageError for options that exclude each other and ranges that end before they begin, before anything is read.
+// Throws UsageError for options that exclude each other, ranges that end before they begin and regions that are none, before
+// anything is read.
 ISOWAVE_EXPORT void checkRanges(const LevelOptions& options);
 
 }  // namespace isowave

@@ -10,14 +10,14 @@
 
 namespace isowave::collapse {
 
-void Block::load(const TriangleMesh& mesh, const std::vector<Quadric>& quadrics, bool first,
-                 const Index* begin, const Index* end, const Lattice& blocks, const Cell& block,
-                 double cell) {
+void Block::load(const TriangleMesh& mesh, const std::vector<char>& kept,
+                 const std::vector<Quadric>& quadrics, bool first, const Index* begin, const Index* end,
+                 const Lattice& blocks, const Cell& block, double cell) {
     blocks_ = &blocks;
     block_ = block;
     number(mesh, begin, end);
     gatherStars();
-    markFree();
+    markFree(kept);
     isFirst_ = first;
     quadrics_.assign(points_.size(), {});
     if (first)
@@ -114,10 +114,13 @@ void Block::gatherStars() {
     mark_ = 0;
 }
 
-void Block::markFree() {
+void Block::markFree(const std::vector<char>& kept) {
     free_ = inside_;
     for (const Triangle& t : triangles_)
         if (!(inside_[t[0]] && inside_[t[1]] && inside_[t[2]])) free_[t[0]] = free_[t[1]] = free_[t[2]] = 0;
+    if (kept.empty()) return;
+    for (std::size_t v = 0; v < points_.size(); ++v)
+        if (kept[vertexOf_[v]]) free_[v] = 0;
 }
 
 void Block::makeQuadrics() {

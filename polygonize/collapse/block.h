@@ -1,7 +1,7 @@
 // One cube of a mesh and the edges that are collapsed in it.
 //   v0, v1  the ends of an edge, which become one vertex p, called v0 from then on
 //   star    the triangles at v0 or v1; two of them vanish, the others become the fan of p
-//   inside  a point in the block; a vertex is `free` when all triangles at it have all corners inside
+//   inside  a point in the block; a vertex is `free` when all triangles at it have all corners inside, and it is not kept
 // Only edges between free vertices are collapsed, and only to points inside. So what a block changes lies inside, all of
 // it, before and after; whatever could intersect it overlaps the block, and is loaded. That is why blocks need not know of
 // each other, and why an intersection can be refused before it is made.
@@ -72,10 +72,12 @@ struct Counts {
 // one of them stores none of the others loads.
 class Block {
   public:
-    // begin .. end: the triangles that overlap the block. quadrics: by vertex, about it; made, not read, when this is the
-    // `first` round. cell: side of the cubes in which other sheets are looked for, world units.
-    void load(const TriangleMesh& mesh, const std::vector<Quadric>& quadrics, bool first, const Index* begin,
-              const Index* end, const Lattice& blocks, const Cell& block, double cell);
+    // begin .. end: the triangles that overlap the block. kept: by vertex, not 0 where it is not free; or empty. quadrics: by
+    // vertex, about it; made, not read, when this is the `first` round. cell: side of the cubes in which other sheets are
+    // looked for, world units.
+    void load(const TriangleMesh& mesh, const std::vector<char>& kept, const std::vector<Quadric>& quadrics,
+              bool first, const Index* begin, const Index* end, const Lattice& blocks, const Cell& block,
+              double cell);
 
     // log: optional, gets the cost of each collapse.
     void collapse(const Limits& limits, std::vector<double>* log);
@@ -111,7 +113,7 @@ class Block {
     Index localOf(const TriangleMesh& mesh, Index vertex);
     bool isInside(const Vec3& p) const { return blocks_->cellOf(p) == block_; }
     void gatherStars();
-    void markFree();
+    void markFree(const std::vector<char>& kept);
     void makeQuadrics();
 
     Vec3 normalOf(const Triangle& t) const {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+import os
 from typing import Any, Iterable
 
 from .errors import UsageError
@@ -13,6 +14,7 @@ Given = list[tuple[str, str]]
 
 _BY_X = {"spacing", "size"}  # 0.9x0.9x1.5; other lists take commas
 _RANGES = {"levels", "steps"}
+_SEVERAL = {"fine"}  # an option for each of them
 
 
 def _number(name: str, value: Any) -> str:
@@ -63,6 +65,10 @@ def given(**arguments: Any) -> Given:
     options: Given = []
     for name, value in arguments.items():
         if value is None or value is False:
+            continue
+        if name in _SEVERAL:
+            one = isinstance(value, (str, os.PathLike))
+            options += [(_option(name), os.fspath(v)) for v in ([value] if one else value)]
             continue
         options.append((_option(name), "" if value is True else _text(name, value)))
     return options

@@ -412,6 +412,8 @@ def lod(
     compact: bool = False,
     relax: Optional[int] = None,
     deviation: bool = False,
+    fine: Union[None, str, PathLike, Sequence[Union[str, PathLike]]] = None,
+    fine_within: Optional[float] = None,
     # the fit
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
@@ -454,6 +456,8 @@ def lod(
     space: "LPS" (without it) or "RAS", the world of affine, origin and direction. Meshes are LPS.
 
     levels, steps: a number, (first, last) with both included and either None, a range, or the command's text "1..3".
+    fine: a region "x,y,z:x,y,z" or "mesh.stl", ":1" behind it for level 1 instead of 0; or several. Coarser levels keep the
+        details of that level there; ``fine_within`` widens all of them.
     progress: a callback (share of the stage 0 to 1, stage), always called by the thread that called lod(), or a bar of tqdm.
     keep_field: keep the field in memory, for Level.field.
 
@@ -473,8 +477,8 @@ def lod(
     watch = Watch(progress, threads)
     making = given(
         levels=levels, steps=steps, refine=refine, hold=hold, preserve_volume=preserve_volume, keep_specks=keep_specks,
-        features=features, refit=refit, compact=compact, relax=relax, deviation=deviation, triangles=triangles, ratio=ratio,
-        tolerance=tolerance, max_genus=max_genus, max_parts=max_parts, min_component=min_component,
+        features=features, refit=refit, compact=compact, relax=relax, deviation=deviation, fine=fine, fine_within=fine_within,
+        triangles=triangles, ratio=ratio, tolerance=tolerance, max_genus=max_genus, max_parts=max_parts, min_component=min_component,
     )  # fmt: skip
     opening = given(
         iso=iso, label=label, invert=invert, open_border=open_border, nan=nan, voxels=voxels, voxel=voxel,

@@ -11,6 +11,7 @@ namespace {
 void declare(tools::OptionList& options, SolidOptions& solid, LevelOptions& levels, BudgetOptions& budgets) {
     tools::declareLevels(options, levels);
     tools::declareMesh(options, levels, /*features=*/true);
+    tools::declareRegions(options, levels);
     tools::declareBudgets(options, budgets, levels);
     tools::declareSolid(options, solid);
     tools::declareMaxMemory(options, solid);

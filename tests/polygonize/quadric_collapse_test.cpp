@@ -146,6 +146,53 @@ TEST(QuadricCollapse, MakesNoEdgeLongerThanAsked) {
     EXPECT_EQ(zoo::whatIsWrongWith(mesh), "");
 }
 
+// Points on one side of a plane are kept; the others are collapsed as far as without.
+TEST(QuadricCollapse, LeavesWhatIsKeptAsItIs) {
+    for (const double R : {14.0, 40.0}) {
+        TriangleMesh mesh =
+            polygonize(fieldFromDistance(static_cast<int>(R), torus(0.6 * R, 0.25 * R)), refined(2));
+        CollapseOptions options;
+        const auto isKept = [](const Point& p) { return p[0] > 0.5; };
+        std::vector<std::array<Point, 3>> before;
+        const auto keptTriangles = [&](const TriangleMesh& m) {
+            std::vector<std::array<Point, 3>> all;
+            for (const Triangle& t : m.triangles) {
+                const std::array<Point, 3> corners{m.points[t[0]], m.points[t[1]], m.points[t[2]]};
+                if (std::all_of(corners.begin(), corners.end(), isKept)) all.push_back(corners);
+            }
+            std::sort(all.begin(), all.end());
+            return all;
+        };
+        for (const Point& p : mesh.points) options.kept.push_back(isKept(p));
+        before = keptTriangles(mesh);
+        const MeshTopology topology = topologyOf(mesh);
+        const std::int64_t stay = static_cast<std::int64_t>(before.size()), others = trianglesOf(mesh) - stay;
+        options.triangles = stay + others / 10;
+        collapseByQuadrics(mesh, options);
+        // A new point may lie beyond the plane: what was there must still be there, and little more.
+        const auto after = keptTriangles(mesh);
+        EXPECT_TRUE(std::includes(after.begin(), after.end(), before.begin(), before.end()));
+        EXPECT_LE(trianglesOf(mesh), options.triangles + options.triangles / 100);
+        EXPECT_GE(trianglesOf(mesh), options.triangles - options.triangles / 100);
+        const MeshTopology now = topologyOf(mesh);
+        EXPECT_TRUE(now.closed() && now.manifold());
+        EXPECT_EQ(now.genus, topology.genus);
+        EXPECT_NEAR(now.volume, topology.volume, 1e-6 * topology.volume);
+    }
+}
+
+TEST(QuadricCollapse, DoesNothingWhereAllIsKept) {
+    const TriangleMesh mesh = polygonize(fieldFromDistance(14, testing::sphere(9)), refined(2));
+    TriangleMesh same = mesh;
+    CollapseOptions options;
+    options.kept.assign(mesh.points.size(), 1);
+    CollapseReport report;
+    collapseByQuadrics(same, options, &report);
+    EXPECT_EQ(report.collapsed, 0);
+    EXPECT_EQ(same.points, mesh.points);
+    EXPECT_EQ(same.triangles, mesh.triangles);
+}
+
 TEST(QuadricCollapse, TheThreadsDoNotChangeABit) {
     const TriangleMesh mesh = polygonize(fieldFromDistance(40, torus(24, 10)), refined(2));
     TriangleMesh first;

@@ -105,6 +105,7 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
                                                         "features",
                                                         "walls",
                                                         "hold",
+                                                        "regions",
                                                         "cuts",
                                                         "fills",
                                                         "limits_missed",

@@ -83,6 +83,15 @@ Json holdJson(const std::optional<HoldSummary>& h) {
             {"unmet", h->unmet}};
 }
 
+Json regionsJson(const std::optional<RegionSummary>& r) {
+    if (!r) return nullptr;
+    return {{"control_points_fine", r->finePoints},          {"control_points_coarse", r->coarsePoints},
+            {"triangles_inside", r->trianglesInside},        {"triangles_fading", r->trianglesFading},
+            {"triangles_outside", r->trianglesOutside},      {"rms_to_level0_inside", orNull(r->rmsInside)},
+            {"max_to_level0_inside", orNull(r->maxInside)},  {"rms_to_level0_outside", orNull(r->rmsOutside)},
+            {"max_to_level0_outside", orNull(r->maxOutside)}};
+}
+
 Json inputJson(const std::optional<InputDistance>& d) {
     if (!d) return nullptr;
     return {{"rms_to", d->rmsTo}, {"max_to", d->maxTo}, {"rms_from", d->rmsFrom}, {"max_from", d->maxFrom}};
@@ -106,6 +115,7 @@ void putMesh(Json& json, const LevelReport& level) {
     json["thin_kept_at_iso_0"] = orNull(level.thinKeptAtIso0);
     json["walls"] = wallsJson(level.walls);
     json["hold"] = holdJson(level.hold);
+    json["regions"] = regionsJson(level.regions);
     json["features"] = featuresJson(level.features);
     json["cuts"] = editsJson(level.edits, false);
     json["fills"] = editsJson(level.edits, true);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "base/atomic_file.h"
 #include "base/heap.h"
@@ -173,6 +174,13 @@ void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out
     if (copy) copy->commit();
 }
 
+std::vector<std::filesystem::path> filesOf(const std::vector<FineRegion>& regions) {
+    std::vector<std::filesystem::path> files;
+    for (const FineRegion& region : regions)
+        if (const auto* path = std::get_if<std::filesystem::path>(&region.where)) files.push_back(*path);
+    return files;
+}
+
 class Lod : public Command {
   public:
     Lod();
@@ -185,6 +193,8 @@ class Lod : public Command {
     int runOne(Console& console);
     int runParts(Console& console);
     PartStory runPart(const Part& part, const Progress& progress) const;
+    // All files that one input's job reads: no result takes their place.
+    std::vector<std::filesystem::path> readFor(const std::filesystem::path& input) const;
     MeshNames namesIn(const OutputFolder& out) const;
     Made make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
               const Progress& progress) const;
@@ -246,6 +256,7 @@ Lod::Lod()
                    });
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
+    declareRegions(options_, levels_);
     declareJson();
     declareBudgets(options_, budgets_, levels_);
     declareSolid(options_, solid_);
@@ -274,9 +285,17 @@ void Lod::check() {
     if (view_) view::requirePages();
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
+    if (budgets_.any() && !levels_.fine.empty())
+        throw UsageError("--fine and budgets exclude each other: a budget chooses among whole levels");
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
     checkRanges(levels_);
+}
+
+std::vector<std::filesystem::path> Lod::readFor(const std::filesystem::path& input) const {
+    std::vector<std::filesystem::path> files = filesOf(levels_.fine);
+    files.insert(files.begin(), input);
+    return files;
 }
 
 MeshNames Lod::namesIn(const OutputFolder& out) const {
@@ -311,7 +330,7 @@ int Lod::run(Console& console) {
 }
 
 int Lod::runOne(Console& console) {
-    OutputFolder out(*output_, Inputs(arguments));
+    OutputFolder out(*output_, Inputs(readFor(arguments[0])));
     check();
     const MeshNames names = namesIn(out);
     if (jsonToFile()) out.keepFree(*json_);
@@ -347,7 +366,7 @@ int Lod::runParts(Console& console) {
 }
 
 PartStory Lod::runPart(const Part& part, const Progress& progress) const {
-    OutputFolder out(part.output, Inputs({part.input}));
+    OutputFolder out(part.output, Inputs(readFor(part.input)));
     const MeshNames names = namesIn(out);
     refuseTaken(names, out);
     try {

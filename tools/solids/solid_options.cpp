@@ -196,6 +196,23 @@ void declareLevels(OptionList& options, LevelOptions& level) {
                   [&](const std::string& v) { level.steps = range(v); });
 }
 
+void declareRegions(OptionList& options, LevelOptions& level) {
+    options.values(
+        "--fine", "REGION",
+        "in this region coarser levels keep the details of a finer one; may be given several times. "
+        "X,Y,Z:X,Y,Z, "
+        "two opposite corners of a box, or the file of a closed mesh, world coordinates (LPS mm for "
+        "images); :LEVEL behind it where the level to keep is not 0",
+        [&](const std::string& v) { level.fine.push_back(region(v)); });
+    options.value("--fine-within", "D", "0", "widen the regions of --fine by D (world units)",
+                  [&](const std::string& v) {
+                      const double within = number(v);
+                      if (within < 0) throw UsageError("'" + v + "' is below 0");
+                      if (level.fine.empty()) throw UsageError("widens the regions of --fine; give one");
+                      for (FineRegion& r : level.fine) r.within = within;
+                  });
+}
+
 void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& level) {
     options.value("--triangles", "N,N,...", "",
                   "instead of the levels, meshes of at most so many triangles: name_TN",

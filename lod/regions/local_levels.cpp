@@ -1,0 +1,132 @@
+#include "lod/regions/local_levels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "polygonize/quadric_collapse.h"
+
+namespace isowave::lod {
+namespace {
+
+// each(begin, end), in parallel.
+template <class Each>
+void forRanges(std::size_t count, const Progress& progress, const Each& each) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+        progress.check();
+        each(range.begin(), range.end());
+    });
+}
+
+}  // namespace
+
+LocalLevels::LocalLevels(std::vector<Stage> regions, Stage own) : stages_(std::move(regions)) {
+    stages_.push_back(std::move(own));
+}
+
+std::vector<LocalLevels::PointPlace> LocalLevels::pointPlaces(const TriangleMesh& mesh,
+                                                              const Progress& progress) const {
+    const auto own = static_cast<char>(stages_.size() - 1);
+    std::vector<PointPlace> places(mesh.points.size(), {own, false});
+    forRanges(places.size(), progress, [&](std::size_t begin, std::size_t end) {
+        for (char stage = 0; stage < own; ++stage) {
+            FadeWeights::Reader weights(*stages_[static_cast<std::size_t>(stage)].weights);
+            for (std::size_t v = begin; v != end; ++v) {
+                if (places[v].stage != own) continue;
+                const FadeWeights::Range range = weights.around(mesh.points[v]);
+                if (range.most > 0) places[v] = {stage, range.least >= 1};
+            }
+        }
+    });
+    return places;
+}
+
+std::vector<LocalLevels::Place> LocalLevels::placesOf(const TriangleMesh& mesh,
+                                                      const Progress& progress) const {
+    const std::vector<PointPlace> points = pointPlaces(mesh, progress);
+    const auto own = static_cast<char>(stages_.size() - 1);
+    std::vector<Place> places;
+    places.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+        int inside = 0, outside = 0;
+        for (const std::uint32_t v : t) inside += points[v].inside, outside += points[v].stage == own;
+        places.push_back(inside == 3 ? Place::inside : outside == 3 ? Place::outside : Place::fading);
+    }
+    return places;
+}
+
+std::vector<double> LocalLevels::smallestAt(const TriangleMesh& mesh, const Progress& progress) const {
+    std::vector<double> smallest;
+    smallest.reserve(mesh.points.size());
+    for (const PointPlace& place : pointPlaces(mesh, progress))
+        smallest.push_back(stages_[static_cast<std::size_t>(place.stage)].smallest);
+    return smallest;
+}
+
+void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const {
+    for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
+        const std::int64_t ratio = std::int64_t{sampled / wanted}
+                                   << (stages_[stage].level - stages_.front().level);
+        const bool isOwn = stage + 1 == stages_.size();
+        collapseTo(mesh, stage, !isOwn, ratio * ratio, progress);
+        if (isOwn) break;
+        const int coarser = stages_[stage + 1].level - stages_[stage].level;
+        collapseTo(mesh, stage, false, ratio * ratio << coarser, progress);
+    }
+}
+
+// Of the triangles that depend on the stage and on none that is finer, have a corner inside or have none, one in `share` is left.
+void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, std::int64_t share,
+                             const Progress& progress) const {
+    if (share == 1) return;
+    const std::vector<PointPlace> places = pointPlaces(mesh, progress);
+    CollapseOptions options;
+    options.kept.reserve(places.size());
+    for (const PointPlace& place : places)
+        options.kept.push_back(static_cast<std::size_t>(place.stage) != stage || place.inside != inside);
+    std::int64_t follow = 0;
+    for (const Triangle& t : mesh.triangles) {
+        const char finest = std::min({places[t[0]].stage, places[t[1]].stage, places[t[2]].stage});
+        const bool hasInside = places[t[0]].inside || places[t[1]].inside || places[t[2]].inside;
+        follow += static_cast<std::size_t>(finest) == stage && hasInside == inside;
+    }
+    options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow + follow / share;
+    collapseByQuadrics(mesh, options, nullptr, progress);
+}
+
+std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& progress) const {
+    std::vector<openvdb::Coord> points;
+    points.reserve(static_cast<std::size_t>(own.controlPointCount()));
+    for (auto it = own.controlPoints->cbeginValueOn(); it; ++it) points.push_back(it.getCoord());
+    std::vector<char> isLeft(points.size(), 1);
+    forRanges(points.size(), progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t stage = 0; stage + 1 < stages_.size(); ++stage) {
+            FadeWeights::Reader weights(*stages_[stage].weights);
+            const int finer = stages_.back().level - stages_[stage].level;
+            for (std::size_t i = begin; i != end; ++i)
+                if (isLeft[i] && weights.at(points[i] << static_cast<std::size_t>(finer)) >= 1) isLeft[i] = 0;
+        }
+    });
+    return std::count(isLeft.begin(), isLeft.end(), 1);
+}
+
+TriangleMesh partOf(const TriangleMesh& mesh, const std::vector<LocalLevels::Place>& places, bool inside) {
+    constexpr std::uint32_t kNone = ~0u;
+    std::vector<std::uint32_t> number(mesh.points.size(), kNone);
+    TriangleMesh part;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if ((places[t] == LocalLevels::Place::inside) != inside) continue;
+        Triangle corners = mesh.triangles[t];
+        for (std::uint32_t& v : corners) {
+            if (number[v] == kNone) {
+                number[v] = static_cast<std::uint32_t>(part.points.size());
+                part.points.push_back(mesh.points[v]);
+            }
+            v = number[v];
+        }
+        part.triangles.push_back(corners);
+    }
+    return part;
+}
+
+}  // namespace isowave::lod

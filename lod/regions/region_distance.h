@@ -1,0 +1,32 @@
+// How far the points of a lattice are from a region.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lod/regions/region_shape.h"
+#include "volume/mesh_winding.h"
+
+namespace isowave::lod {
+
+class RegionDistance {
+  public:
+    // lattice: index -> world, of the level that the region keeps.
+    RegionDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice, const Progress& progress);
+
+    // Distance of a lattice point from the region, widened by its `within`; negative inside; world units. Where it is more than
+    // `most` on either side, any number that is so, too.
+    double at(const openvdb::Coord& point, double most) const;
+
+    // Lattice points outside this box are farther than `distance`.
+    openvdb::CoordBBox boxWithin(double distance) const;
+
+    const RegionShape& shape() const { return shape_; }
+
+  private:
+    RegionShape shape_;
+    openvdb::math::Transform::ConstPtr lattice_;
+    std::unique_ptr<const LatticeLines> lines_;  // of a mesh
+};
+
+}  // namespace isowave::lod
