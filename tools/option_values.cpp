@@ -38,7 +38,7 @@ Point corner(const std::string& text) {
 // "1,2,3", "1,2" or "1,2,x", which was meant to be a corner; no file's name.
 bool looksLikeCorner(const std::string& text) {
     return text.find(',') != std::string::npos &&
-           text.find_first_not_of("0123456789.,+-eEnaif") == std::string::npos;
+           text.find_first_not_of(" 0123456789.,+-eEnaif") == std::string::npos;
 }
 
 int stepNumber(const std::string& text) { return static_cast<int>(integer(text, 0, kMostSteps)); }

@@ -1,7 +1,11 @@
 #include "lod/regions/region_distance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "isowave/error.h"
 
 namespace isowave::lod {
 namespace {
@@ -18,6 +22,19 @@ double distanceTo(const FineRegion::Box& box, const openvdb::Vec3d& p) {
     return inside > 0 ? std::sqrt(outside2) : inside;
 }
 
+// The lines of the lattice through a mesh take 4 bytes each.
+void requireExtent(const std::vector<openvdb::Vec3d>& points, const RegionShape& shape) {
+    openvdb::BBoxd box;
+    for (const openvdb::Vec3d& p : points) box.expand(p);
+    const double extent = box.extents()[box.maxExtent()];
+    if (!(extent <= RegionDistance::kLargest))
+        throw InputError(
+            shape.name,
+            fmt::format("the mesh is {:.3g} voxels of level {} across, more than {:g}; is it in the "
+                        "units of the solid? Give a smaller one, or a box",
+                        extent, shape.level, RegionDistance::kLargest));
+}
+
 }  // namespace
 
 RegionDistance::RegionDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice,
@@ -29,6 +46,7 @@ RegionDistance::RegionDistance(RegionShape shape, openvdb::math::Transform::Cons
     points.reserve(closed->mesh.points.size());
     for (const Point& p : closed->mesh.points)
         points.push_back(lattice_->worldToIndex(openvdb::Vec3d(p[0], p[1], p[2])));
+    requireExtent(points, shape_);
     lines_ = std::make_unique<const LatticeLines>(points, closed->mesh.triangles, closed->evenOdd, progress);
 }
 
@@ -51,7 +69,9 @@ openvdb::CoordBBox RegionDistance::boxWithin(double distance) const {
         openvdb::Vec3d p;
         for (int axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<std::size_t>(axis);
-            p[axis] = corner >> axis & 1 ? bounds.high[a] + distance : bounds.low[a] - distance;
+            constexpr double kFinite = 1e30;  // what is infinite would make NaN below
+            p[axis] = std::clamp(corner >> axis & 1 ? bounds.high[a] + distance : bounds.low[a] - distance,
+                                 -kFinite, kFinite);
         }
         // Far corners of a huge box: the lattice's own numbers end there.
         constexpr double kFarthest = 1 << 29;

@@ -11,7 +11,9 @@ namespace isowave::lod {
 
 class RegionDistance {
   public:
-    // lattice: index -> world, of the level that the region keeps.
+    static constexpr double kLargest = 8192;  // voxels of a mesh, along an axis
+
+    // lattice: index -> world, of the level that the region keeps. Throws InputError for a mesh of more than kLargest voxels.
     RegionDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice, const Progress& progress);
 
     // Distance of a lattice point from the region, widened by its `within`; negative inside; world units. Where it is more than

@@ -307,6 +307,16 @@ TEST(Regions, OfAMeshAreWhatLiesInIt) {
               kept.levels[3].mesh.points);
 }
 
+// Numbers as large as they come are a region of everything.
+TEST(Regions, MayReachAsFarAsNumbersGo) {
+    const Solid ring = open(ringMesh(), {.voxels = 24});
+    const Ladder whole = makeLadder(ring, keeping({boxRegion(kEverything)}, {0, 1}));
+    for (const FineRegion& region : {boxRegion({{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}}),
+                                     boxRegion({{0, 0, 0}, {1, 1, 1}}, 0, 1e308)})
+        EXPECT_EQ(makeLadder(ring, keeping({region}, {0, 1})).levels[1].mesh.points,
+                  whole.levels[1].mesh.points);
+}
+
 // A turned coupling with holes, walls and a rim: half of it kept.
 TEST(Regions, OfARealPartHaveTheHandlesOfLevel0) {
     const Solid part =
@@ -375,6 +385,10 @@ TEST(Regions, RefuseWhatIsNone) {
     TriangleMesh open = ringMesh();
     open.triangles.resize(open.triangles.size() - 40);
     EXPECT_THAT(complaint({open}), HasSubstr("input: the mesh of a region: the mesh of a region is open"));
+    TriangleMesh huge = ringMesh();
+    for (Point& p : huge.points)
+        for (double& x : p) x *= 1e4;
+    EXPECT_THAT(complaint({huge}), HasSubstr("input: --fine a mesh: the mesh is"));
     EXPECT_THAT(complaint({std::filesystem::path("/nowhere/jaw.stl")}), HasSubstr("input: /nowhere/jaw.stl"));
     EXPECT_THAT(complaintOf({.fine = {boxRegion(kEverything, 40)}}),
                 HasSubstr("no level is coarser than level 40"));

@@ -52,6 +52,23 @@ TEST(Specks, AreComponentsSmallerThanTheThreshold) {
     EXPECT_EQ(mesh.normals.size(), mesh.points.size());
 }
 
+// What is a speck is for the component's least place to say: here the ball's, and not the bubble's.
+TEST(Specks, GoByWhatIsTooSmallWhereTheyAre) {
+    TriangleMesh mesh = polygonize(ballWithBubble(4, 0, 2));
+    std::vector<double> smallest;
+    for (const Point& p : mesh.points)  // the speck lies at (11.4, 10.2, 9.7)
+        smallest.push_back(p[0] + p[1] + p[2] > 22 ? 0.8 * ballVolume(2) : 1.2 * ballVolume(4));
+    TriangleMesh oneLarge = mesh;
+    const SpeckRemoval bubble = removeSpecks(oneLarge, smallest);
+    EXPECT_EQ(bubble.specks, 0);
+    EXPECT_EQ(bubble.bubbles, 1);
+    EXPECT_EQ(topologyOf(oneLarge).parts, 2);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)  // one point of the bubble is in a finer place
+        if (const Point& p = mesh.points[v]; p[0] > 3.5 && p[0] < 6 && std::hypot(p[1], p[2]) < 2)
+            smallest[v] = 1;
+    EXPECT_EQ(removeSpecks(mesh, smallest).bubbles, 0);
+}
+
 TEST(Specks, LeaveNothingInsideOfWhatWentAndNoInsideTurnedOut) {
     TriangleMesh mesh = polygonize(ballWithBubble(5, 2.5, 2));
     ASSERT_EQ(topologyOf(mesh).components, 4);

@@ -163,6 +163,18 @@ def test_field_is_zero_on_its_mesh_and_its_gradient_points_outside():
         field([1, 2])
 
 
+def test_regions_are_those_of_the_command(tmp_path):
+    box, ring = "-40,-40,-40:0,40,40", "0,-40,-40:40,0,40:1"
+    ladder = isowave.lod(GEAR, voxels=48, levels=(0, 2), fine=[box, ring], fine_within=0.5)
+    report = command_report(tmp_path, GEAR, "--voxels", 48, "--levels", "0..2", "--fine", box, "--fine", ring, "--fine-within", 0.5)
+    assert stable(ladder.report) == stable(report)
+    assert ladder[2].report["regions"]["triangles_inside"] > 0 and ladder[0].report["regions"] is None
+    one = isowave.lod(GEAR, voxels=48, levels=(0, 1), fine=box)
+    assert len(one[1].triangles) > len(isowave.lod(GEAR, voxels=48, levels=(0, 1))[1].triangles)
+    with pytest.raises(isowave.InputError, match="none.stl"):
+        isowave.lod(GEAR, voxels=32, fine=tmp_path / "none.stl")
+
+
 def test_keep_field_false_has_no_field():
     ladder = isowave.lod(GEAR, voxels=32, levels=0, keep_field=False)
     with pytest.raises(isowave.UsageError, match="keep_field=False"):
