@@ -94,7 +94,8 @@ TEST_P(TriangleListsOf, AreExactAndTheSameWithEveryVector) {
             worst = std::max(worst, std::abs(double(distances[std::size_t(n)]) - expected));
         }
     }
-    EXPECT_LT(worst, 4e-6);  // seen 3.7e-7, 5.2e-7, 2.1e-6, 3.6e-7, 2.1e-7, 6.7e-7
+    EXPECT_LT(worst,
+              4e-6);  // seen 1.2e-7, 1.2e-7, 2.1e-6, 1.2e-7, 2.5e-8, 4.7e-7: rounding, and ties of the lists
 }
 
 INSTANTIATE_TEST_SUITE_P(Soups, TriangleListsOf,

@@ -11,6 +11,9 @@ namespace {
 // What rounding to float may take from a distance of blocks below 32 voxels, with room to spare.
 constexpr float kSlack = 2e-3f;
 
+// Where triangles share an edge, the one that a point lies above is the nearest, and not, by rounding, its neighbour.
+constexpr float kTie = 1e-6f;
+
 // sqrt(3)/2 times the edge between the outermost of n lattice points.
 float toCorner(int n) { return std::sqrt(3.0f) / 2 * float(n - 1) + kSlack; }
 
@@ -45,30 +48,76 @@ struct Near {
     Near(const TriangleSoup::Corners& corners, const Place& point);
 };
 
+// Normal, unit vectors along the edges and inwards, lengths.
+struct Frame {
+    Place p[3], normal, along[3], inward[3];
+    double length[3];
+    bool flat;  // its edges are all there is
+
+    Frame(const TriangleSoup::Corners& corners, const Place& point)
+        : p{minus(corners[0], point), minus(corners[1], point), minus(corners[2], point)} {
+        normal = cross(minus(p[1], p[0]), minus(p[2], p[0]));
+        double longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            const Place side = minus(p[(k + 1) % 3], p[k]);
+            longest = std::max(longest, dot(side, side));
+        }
+        const double area = std::sqrt(dot(normal, normal));
+        flat = !(area > 1e-9 * longest);
+        for (double& x : normal) x *= flat ? 0 : 1 / area;
+        for (int k = 0; k < 3; ++k) {
+            along[k] = minus(p[(k + 1) % 3], p[k]);
+            length[k] = std::sqrt(dot(along[k], along[k]));
+            for (double& x : along[k]) x *= length[k] > 0 ? 1 / length[k] : 0;
+            inward[k] = cross(normal, along[k]);
+        }
+    }
+};
+
 Near::Near(const TriangleSoup::Corners& corners, const Place& point) {
-    const Place p[3] = {minus(corners[0], point), minus(corners[1], point), minus(corners[2], point)};
-    Place n = cross(minus(p[1], p[0]), minus(p[2], p[0]));
-    double longest = 0;
+    const Frame frame(corners, point);
+    normal = Direction(frame.normal);
+    offset = static_cast<float>(-dot(frame.normal, frame.p[0]));
+    innermost = frame.flat ? -1.0f : 1e30f;
     for (int k = 0; k < 3; ++k) {
-        const Place side = minus(p[(k + 1) % 3], p[k]);
-        longest = std::max(longest, dot(side, side));
-    }
-    const double area = std::sqrt(dot(n, n));
-    const bool flat = !(area > 1e-9 * longest);
-    for (double& x : n) x *= flat ? 0 : 1 / area;
-    normal = Direction(n);
-    offset = static_cast<float>(-dot(n, p[0]));
-    innermost = flat ? -1.0f : 1e30f;
-    for (int k = 0; k < 3; ++k) {
-        const Place &from = p[k], &to = p[(k + 1) % 3];
-        Place u = minus(to, from);
-        const double length = std::sqrt(dot(u, u));
-        const double scale = length > 0 ? 1 / length : 0;
-        for (double& x : u) x *= scale;
+        const Place &from = frame.p[k], &u = frame.along[k];
         const double at = -dot(from, u);
-        edges[k] = {Direction(isowave::along(from, at, u)), Direction(u), Direction(cross(n, u)),
-                    static_cast<float>(-at), static_cast<float>(length - at)};
+        edges[k] = {Direction(isowave::along(from, at, u)), Direction(u), Direction(frame.inward[k]),
+                    static_cast<float>(-at), static_cast<float>(frame.length[k] - at)};
     }
+}
+
+// The same in double, for the triangle that has turned out to be nearest to a point.
+class Exact {
+  public:
+    Exact(const TriangleSoup::Corners& corners, const Place& point);
+    double distance(const Place& p) const {
+        double squared = 1e300;
+        bool inside = !flat_;
+        for (const Edge& e : edges_) {
+            const Place w = minus(p, e.from);
+            const double s = std::clamp(dot(w, e.along), 0.0, e.length);
+            const Place rest = isowave::along(w, -s, e.along);
+            squared = std::min(squared, dot(rest, rest));
+            inside = inside && dot(w, e.inward) >= 0;
+        }
+        return inside ? std::abs(dot(minus(p, edges_[0].from), normal_)) : std::sqrt(squared);
+    }
+
+  private:
+    struct Edge {
+        Place from, along, inward;  // unit vectors
+        double length;
+    } edges_[3];
+    Place normal_;
+    bool flat_;
+};
+
+Exact::Exact(const TriangleSoup::Corners& corners, const Place& point) {
+    const Frame frame(corners, point);
+    for (int k = 0; k < 3; ++k) edges_[k] = {frame.p[k], frame.along[k], frame.inward[k], frame.length[k]};
+    normal_ = frame.normal;
+    flat_ = frame.flat;
 }
 
 // Squared distances of several points. Inside all three edges it is the plane's, elsewhere the least to an edge.
@@ -86,7 +135,7 @@ ISOWAVE_INLINE Floats squaredDistance(const Near& t, Floats x, Floats y, Floats 
         innermost = least(innermost, wx * e.inward.x + wy * e.inward.y + wz * e.inward.z);
     }
     const Floats squared = height * height;
-    return innermost >= 0 ? squared : best;
+    return innermost >= 0 ? squared : best * (1 + kTie);
 }
 
 // Eight points at the corners of a cube, in as many vectors as they take; corner 4 x + 2 y + z.
@@ -119,6 +168,7 @@ struct TriangleLists::Work {
     const TriangleList* triangles;
     std::vector<TriangleSoup::Sphere> spheres;                  // from the block's middle on
     std::vector<Near> prepared;                                 // in the order in which they were wanted
+    std::vector<std::unique_ptr<Exact>> exact;                  // of these, where wanted
     std::vector<std::int32_t> place;                            // of the i-th triangle in `prepared`, or -1
     std::vector<Eight> lower, lowerHere;                        // bounds of the distances of eight middles
     std::vector<std::uint8_t> masks;                            // bit n: may be nearest in child n
@@ -136,6 +186,8 @@ struct TriangleLists::Work {
             spheres[i] = {s.x - shift.x, s.y - shift.y, s.z - shift.z, s.r};
         }
         prepared.clear();
+        exact.clear();
+        exact.resize(list.size());
         place.assign(list.size(), -1);
         lower.resize(list.size());
         masks.resize(list.size());
@@ -146,6 +198,12 @@ struct TriangleLists::Work {
             prepared.emplace_back(soup->corners((*triangles)[i]), middle);
         }
         return prepared[static_cast<std::size_t>(place[i])];
+    }
+    // The distance from a point, from the block's middle on, to the i-th triangle; reach where that is none.
+    float distance(std::int32_t i, const Place& from, float reach) {
+        if (i < 0) return reach;
+        if (!exact[i]) exact[i] = std::make_unique<Exact>(soup->corners((*triangles)[i]), middle);
+        return std::min(reach, static_cast<float>(exact[i]->distance(from)));
     }
 };
 
@@ -196,6 +254,14 @@ ISOWAVE_INLINE float largest(Floats v) {
     return most;
 }
 
+template <int N>
+ISOWAVE_INLINE void keepNearer(typename Lanes<N>::Floats squared, std::uint32_t triangle,
+                               typename Lanes<N>::Floats& best, typename Lanes<N>::Ints& which) {
+    const auto nearer = squared < best;
+    which = nearer ? Lanes<N>::all(static_cast<std::int32_t>(triangle)) : which;
+    best = nearer ? squared : best;
+}
+
 // 4^3 lattice points around `middle`, four a row, by the triangles in work.nearby, nearest first.
 template <int N>
 ISOWAVE_INLINE void fillSparse(Work& work, const Direction& middle, float reach, float* out) {
@@ -205,7 +271,9 @@ ISOWAVE_INLINE void fillSparse(Work& work, const Direction& middle, float reach,
     std::sort(work.nearby.begin(), work.nearby.end());
     const float r = toCorner(4);
     Floats best[kVectors];
+    typename L::Ints which[kVectors];
     for (Floats& b : best) b = L::all(reach * reach);
+    for (auto& w : which) w = L::all(std::int32_t(-1));
     float furthest = reach;
     for (const auto& [lower, triangle] : work.nearby) {
         if (lower - r >= furthest) break;
@@ -218,17 +286,15 @@ ISOWAVE_INLINE void fillSparse(Work& work, const Direction& middle, float reach,
                 z[k] = middle.z - 1.5f + float(k & 3);
             }
             const Floats x = L::all(middle.x - 1.5f + float(v * N / 16));
-            best[v] = least(best[v], squaredDistance(near, x, y, z));
+            keepNearer<N>(squaredDistance(near, x, y, z), triangle, best[v], which[v]);
             all = most(all, best[v]);
         }
         furthest = std::sqrt(largest(all));
     }
-    for (int v = 0; v < kVectors; ++v) {
-        const Floats distance = squareRoot(best[v]);
-        for (int k = 0; k < N; ++k) {
-            const int n = v * N + k;
-            out[(n >> 4) * 64 + (n >> 2 & 3) * 8 + (n & 3)] = distance[k];
-        }
+    for (int n = 0; n < 64; ++n) {
+        const int x = n >> 4, y = n >> 2 & 3, z = n & 3;
+        const Place at{middle.x - 1.5 + x, middle.y - 1.5 + y, middle.z - 1.5 + z};
+        out[x * 64 + y * 8 + z] = work.distance(which[n / N][n % N], at, reach);
     }
 }
 
@@ -258,8 +324,10 @@ ISOWAVE_INLINE void fillEight(Work& work, unsigned bit, const Direction& middle,
     const float r = toCorner(2);
     const Cube<N> cube(middle, 0.5f);
     Floats squared[kParts], best[kParts];
+    typename L::Ints which[kParts];
     for (int part = 0; part < kParts; ++part) {
         squared[part] = L::all(reach * reach);
+        which[part] = L::all(std::int32_t(-1));
         best[part] = L::all(bound);
     }
     float furthest = bound;
@@ -278,14 +346,17 @@ ISOWAVE_INLINE void fillEight(Work& work, unsigned bit, const Direction& middle,
         const Near& near = work.near(triangle);
         furthest = 0;
         for (int part = 0; part < kParts; ++part) {
-            squared[part] =
-                least(squared[part], squaredDistance(near, cube.x[part], cube.y[part], cube.z[part]));
+            keepNearer<N>(squaredDistance(near, cube.x[part], cube.y[part], cube.z[part]), triangle,
+                          squared[part], which[part]);
             best[part] = least(best[part], squareRoot(squared[part]));
             furthest = std::max(furthest, largest(best[part]));
         }
     }
-    for (int n = 0; n < 8; ++n)
-        out[(n >> 2) * 64 + (n >> 1 & 1) * 8 + (n & 1)] = std::sqrt(squared[n / N][n % N]);
+    for (int n = 0; n < 8; ++n) {
+        const Place at{middle.x + (n & 4 ? 0.5 : -0.5), middle.y + (n & 2 ? 0.5 : -0.5),
+                       middle.z + (n & 1 ? 0.5 : -0.5)};
+        out[(n >> 2) * 64 + (n >> 1 & 1) * 8 + (n & 1)] = work.distance(which[n / N][n % N], at, reach);
+    }
 }
 
 }  // namespace

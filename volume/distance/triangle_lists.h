@@ -9,10 +9,11 @@
 // the least d(m, t) of all. What is farther is dropped; the nearest of every lattice point stays. d(m, t) is exact for triangles
 // that are large beside the child; small ones are bounded by a sphere around their centroid.
 //
-// Floats suffice: triangles are prepared in double about the middle of a leaf, so that all numbers that matter are
-// small. A distance is off by less than 4e-6 voxel (2.1e-6 was seen, on random soups with flat triangles and slivers).
-// It is the least over a list that holds the nearest triangle, whatever else it holds: no order of triangles and no
-// thread shows.
+// Floats suffice to find the nearest triangle: triangles are prepared in double about the middle of a leaf, so that all numbers that
+// matter are small. Its distance is then taken in double: on flat faces nothing but the last rounding shows, without which a face
+// would not be flat to who collapses its triangles. Where two triangles are equally near but for rounding, the result is
+// off by less than 4e-6 voxel (2.1e-6 was seen, on random soups with flat triangles and slivers).
+// It is the least over a list that holds the nearest triangle: no thread shows.
 #pragma once
 
 #include <array>
