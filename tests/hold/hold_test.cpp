@@ -11,6 +11,7 @@
 
 #include "polygonize/polygonize.h"
 #include "polygonize/topology.h"
+#include "tests/zoo/box.h"
 #include "volume/distance_mesh.h"
 #include "volume/fit.h"
 #include "wavelets/direction.h"
@@ -33,18 +34,7 @@ BSplineField platesOf(const std::vector<std::array<double, 2>>& plates) {
                             Vec3d(40.31, 39.83, 40.23);
             mesh.points.push_back({p[0], p[1], p[2]});
         }
-        for (const Triangle& t : std::vector<Triangle>{{0, 2, 3},
-                                                       {0, 3, 1},
-                                                       {4, 5, 7},
-                                                       {4, 7, 6},
-                                                       {0, 1, 5},
-                                                       {0, 5, 4},
-                                                       {2, 6, 7},
-                                                       {2, 7, 3},
-                                                       {0, 4, 6},
-                                                       {0, 6, 2},
-                                                       {1, 3, 7},
-                                                       {1, 7, 5}})
+        for (const Triangle& t : zoo::kBoxTriangles)
             mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
     return fitDistance(*distanceFromMesh(mesh, *openvdb::math::Transform::createLinearTransform(1.0), 4));

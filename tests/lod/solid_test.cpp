@@ -4,6 +4,7 @@
 #include "isowave/openvdb.h"
 #include "tests/lod/solids.h"
 #include "tests/temp_folder.h"
+#include "tests/zoo/box.h"
 
 namespace isowave::lod_test {
 namespace {
@@ -276,8 +277,7 @@ TEST(MeshSolid, IsThereWhereNoLatticePointIsInside) {
     TriangleMesh sheet;
     for (int i = 0; i < 8; ++i)
         sheet.points.push_back({i & 1 ? 60.0 : 0.0, i & 2 ? 40.0 : 0.0, i & 4 ? 0.5 : 0.0});
-    sheet.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    sheet.triangles.assign(zoo::kBoxTriangles.begin(), zoo::kBoxTriangles.end());
     const Solid solid = open(sheet, {.voxel = 1.0});
     EXPECT_EQ(solid.input().parts, 1);
     const Ladder ladder = makeLadder(solid, {.levels = StepRange{0, 0}});

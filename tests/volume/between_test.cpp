@@ -1,5 +1,6 @@
 // The promises of volume/walls/between.h, and what fitWalls() makes of them.
 #include "volume/walls/between.h"
+#include "tests/zoo/box.h"
 
 #include <gtest/gtest.h>
 
@@ -27,18 +28,7 @@ struct Solid {
             points.emplace_back(i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]);
             component.push_back(first / 8);
         }
-        for (const Triangle& t : {Triangle{0, 2, 3},
-                                  {0, 3, 1},
-                                  {4, 5, 7},
-                                  {4, 7, 6},
-                                  {0, 1, 5},
-                                  {0, 5, 4},
-                                  {2, 6, 7},
-                                  {2, 7, 3},
-                                  {0, 4, 6},
-                                  {0, 6, 2},
-                                  {1, 3, 7},
-                                  {1, 7, 5}}) {
+        for (const Triangle& t : zoo::kBoxTriangles) {
             const Triangle shifted{first + t[0], first + t[inverted ? 2 : 1], first + t[inverted ? 1 : 2]};
             triangles.push_back(shifted);
         }

@@ -1,5 +1,6 @@
 // The promises of volume/walls/wall_fit.h.
 #include "volume/walls/wall_fit.h"
+#include "tests/zoo/box.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -29,8 +30,7 @@ TriangleMesh boxOf(const Vec3d& half, const Mat3d& turn, const Vec3d& middle) {
         const Vec3d p = turn * corner + middle;
         mesh.points.push_back({p[0], p[1], p[2]});
     }
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    mesh.triangles.assign(zoo::kBoxTriangles.begin(), zoo::kBoxTriangles.end());
     return mesh;
 }
 

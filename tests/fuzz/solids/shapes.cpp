@@ -6,6 +6,7 @@
 #include "isowave/isowave.h"
 #include "isowave/openvdb.h"
 #include "tests/fuzz/bytes.h"
+#include "tests/zoo/box.h"
 #include "tests/zoo/mesh_check.h"
 
 namespace isowave::fuzz {
@@ -180,19 +181,7 @@ void addBox(TriangleMesh& mesh, Bytes& bytes) {
     std::vector<Point> points;
     for (int i = 0; i < 8; ++i)
         points.push_back({i & 1 ? b[0] : a[0], i & 2 ? b[1] : a[1], i & 4 ? b[2] : a[2]});
-    add(mesh, points,
-        {{0, 2, 3},
-         {0, 3, 1},
-         {4, 5, 7},
-         {4, 7, 6},
-         {0, 1, 5},
-         {0, 5, 4},
-         {2, 6, 7},
-         {2, 7, 3},
-         {0, 4, 6},
-         {0, 6, 2},
-         {1, 3, 7},
-         {1, 7, 5}});
+    add(mesh, points, {zoo::kBoxTriangles.begin(), zoo::kBoxTriangles.end()});
 }
 
 // Bodies of either orientation, which may lie in each other, touch, overlap or have no volume; now and then a triangle is missing
