@@ -1,7 +1,6 @@
 #include "io/image/formats/mgh.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -24,11 +23,10 @@ constexpr std::size_t kHeaderBytes = 284, kFieldBytes = 90;
 class MghBytes {
   public:
     explicit MghBytes(const fs::path& path) {
-        gzFile file = gzopen(path.c_str(), "rb");
-        const int held = file ? gzread(file, bytes_.data(), kFieldBytes) : 0;
-        if (file) gzclose(file);
-        if (held < static_cast<int>(kFieldBytes))
+        const std::string held = firstBytes(path, kFieldBytes);
+        if (held.size() < kFieldBytes)
             throw InputError(path.string(), "is shorter than an MGH header; it is truncated or no MGH image");
+        std::copy(held.begin(), held.end(), bytes_.begin());
     }
     template <class T>
     T at(std::size_t offset) const {
