@@ -214,7 +214,8 @@ class Pyramid:
     @property
     def steps(self) -> list[dict[str, Any]]:
         """A dictionary a step, finest first, with the keys of ``isowave info --json``."""
-        return self._native.steps()
+        steps: list[dict[str, Any]] = json.loads(self._native.steps())
+        return steps
 
     def field(self, step: int = 0, *, threads: Optional[int] = None, progress: Optional[ProgressLike] = None) -> Field:
         """The field of a step. Raises UsageError where there is no such step."""

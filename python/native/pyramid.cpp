@@ -8,6 +8,7 @@
 #include "python/native/options.h"
 #include "python/native/watch.h"
 #include "tools/output.h"
+#include "tools/report/info_report.h"
 
 namespace isowave::python {
 namespace {
@@ -84,24 +85,7 @@ Field fieldOfSolid(const Solid& solid, int step, const py::object& watch) {
     return watched(watch, [&](const Progress& progress) { return fieldOf(solid, step, progress); });
 }
 
-py::list factsOf(const Pyramid& pyramid) {
-    py::list list;
-    for (const StepFacts& f : pyramid.steps()) {
-        py::dict facts;
-        facts["step"] = f.step;
-        facts["level"] =
-            f.step % kStepsPerLevel == 0 ? py::object(py::int_(f.step / kStepsPerLevel)) : py::none();
-        facts["spacing"] = f.spacing;
-        facts["domain"] = f.domain;
-        facts["control_points"] = f.controlPoints;
-        facts["nodes"] = f.nodes;
-        facts["details"] = f.details;
-        facts["coefficients"] = f.coefficients;
-        facts["leaf_occupancy"] = f.leafOccupancy;
-        list.append(facts);
-    }
-    return list;
-}
+std::string stepsOf(const Pyramid& pyramid) { return tools::dumped(tools::stepsJson(pyramid.steps())); }
 
 }  // namespace
 
@@ -122,7 +106,7 @@ void bindPyramid(py::module_& module) {
         .def_property_readonly("control_points", &Pyramid::controlPoints)
         .def_property_readonly("memory_bytes", &Pyramid::memoryBytes)
         .def_property_readonly("source", [](const Pyramid& pyramid) { return pyramid.source(); })
-        .def("steps", factsOf)
+        .def("steps", stepsOf)
         .def("field", fieldAt)
         .def("save", save<Pyramid>);
     module.def("load_pyramid", load);

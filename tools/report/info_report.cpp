@@ -139,6 +139,22 @@ std::string textOf(const VdbInfo& info) {
 
 // ---- pyramids
 
+Json stepsJson(const std::vector<StepFacts>& steps) {
+    Json json = Json::array();
+    for (const StepFacts& f : steps)
+        json.push_back(
+            {{"step", f.step},
+             {"level", f.step % kStepsPerLevel == 0 ? Json(f.step / kStepsPerLevel) : Json(nullptr)},
+             {"spacing", triple(f.spacing)},
+             {"domain", f.domain},
+             {"control_points", f.controlPoints},
+             {"nodes", f.nodes},
+             {"details", f.details},
+             {"coefficients", f.coefficients},
+             {"leaf_occupancy", f.leafOccupancy}});
+    return json;
+}
+
 std::string jsonOf(const PyramidInfo& info) {
     Json json = start(info.path, "pyramid");
     json["packed"] = info.packed;
@@ -149,18 +165,7 @@ std::string jsonOf(const PyramidInfo& info) {
     json["control_points"] = info.controlPoints;
     json["memory_bytes"] = info.memoryBytes;
     json["file_bytes"] = info.fileBytes;
-    json["steps"] = Json::array();
-    for (const StepFacts& f : info.steps)
-        json["steps"].push_back(
-            {{"step", f.step},
-             {"level", f.step % kStepsPerLevel == 0 ? Json(f.step / kStepsPerLevel) : Json(nullptr)},
-             {"spacing", triple(f.spacing)},
-             {"domain", f.domain},
-             {"control_points", f.controlPoints},
-             {"nodes", f.nodes},
-             {"details", f.details},
-             {"coefficients", f.coefficients},
-             {"leaf_occupancy", f.leafOccupancy}});
+    json["steps"] = stepsJson(info.steps);
     json["levels"] = Json::array();
     for (const LevelReport& level : info.levels) json["levels"].push_back(storyJson(level));
     return dumped(json);

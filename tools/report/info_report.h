@@ -9,6 +9,7 @@
 #include "isowave/ladder.h"
 #include "isowave/measure.h"
 #include "isowave/pyramid.h"
+#include "tools/report/json.h"
 #include "volume/image_statistics.h"
 
 namespace isowave::tools {
@@ -56,6 +57,7 @@ struct PyramidInfo {
     std::vector<StepFacts> steps;
     std::vector<LevelReport> levels;
 };
+Json stepsJson(const std::vector<StepFacts>& steps);
 std::string jsonOf(const PyramidInfo& info);
 std::string textOf(const PyramidInfo& info);
 
