@@ -1,13 +1,12 @@
 // limitTopology = rounds of
 //   find    what could be cut or filled (topology_candidates.h)
 //   try     each on its surroundings alone: Euler number and volume of the mesh there (local_edit.h)
-//   choose  the cheapest that do not touch each other, as many as are too many
+//   choose  those that move the least to the other side and do not touch each other, as many as are too many
 //   apply   all together and count the mesh; where it is not as it should be, each half on its own
 #include "hold/cut_or_fill.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <span>
@@ -48,27 +47,8 @@ struct Tried {
     std::vector<OptionKey> useless;
 };
 
-// How an option is tried: gently first. A ball around the plan's middle is what the spline can always bend to; it takes more volume,
-// and is tried where few are left that nothing else removes.
-struct Manner {
-    double margin;
-    double thicker;   // control points
-    double ball = 0;  // radius, control points
-};
-constexpr Manner kManners[] = {{0.25, 0}, {0.25, 1}, {1.0, 1}};
-constexpr Manner kBalls[] = {{0.25, 1, 1.0}, {0.25, 1, 1.75}, {0.25, 1, 2.5}};
-constexpr std::int64_t kFewForBalls = 4;
-
-void addBall(EditPlan& plan, double radius) {  // in lattice steps
-    openvdb::Vec3d middle(0);
-    for (const Coord& c : plan.points) middle += c.asVec3d() / static_cast<double>(plan.points.size());
-    const std::set<Coord> own(plan.points.begin(), plan.points.end());
-    CoordBBox around(Coord::floor(middle - openvdb::Vec3d(radius)),
-                     Coord::ceil(middle + openvdb::Vec3d(radius)));
-    for (auto at = around.begin(); at; ++at)
-        if (((*at).asVec3d() - middle).length() <= radius && !own.count(*at)) plan.points.push_back(*at);
-    plan.whole = true;
-}
+// How an option is tried: gently first.
+constexpr EditManner kManners[] = {{0.25, false}, {0.25, true}, {1.0, true}};
 
 // Options are tried while their estimate is below this multiple of the cheapest one's that works.
 constexpr double kWorthTrying = 4;
@@ -90,7 +70,7 @@ class Limiter {
         bool goesOn = !limits_.allow(result_.after);
         while (goesOn) {
             progress_("limiting the topology", 0);
-            goesOn = (round() || goesOnWithBalls()) && !limits_.allow(result_.after);
+            goesOn = round() && !limits_.allow(result_.after);
         }
         result_.met = limits_.allow(result_.after);
         if (!result_.met) result_.why = why();
@@ -131,17 +111,6 @@ class Limiter {
             most *= kSpare;
         }
         return result_.edits.size() > before;
-    }
-
-    // All that was in vain is tried once more, as balls.
-    bool goesOnWithBalls() {
-        std::int64_t left = 0;
-        for (const What what : kOrder) left += tooMany(what);
-        if (manners_.data() == kBalls || left > kFewForBalls) return false;
-        manners_ = kBalls;
-        useless_.clear();
-        known_.clear();
-        return true;
     }
 
     // ---- try
@@ -195,25 +164,18 @@ class Limiter {
             if (!choice) tried.useless.push_back(keyOf(option));
             if (!choice) continue;
             if (!best) estimate = option.estimate;
-            if (!best || std::abs(choice->edit.volume) < std::abs(best->edit.volume))
-                best = std::move(choice);
+            if (!best || choice->change.moved < best->change.moved) best = std::move(choice);
         }
         return tried;
     }
     std::optional<Choice> tryOption(const EditOption& option) const {
-        for (const Manner& manner : manners_) {
-            EditPlan plan = option.plan;
-            plan.margin = manner.margin;
-            if (manner.ball > 0) {
-                if (plan.points.empty()) break;
-                addBall(plan, manner.ball * refine_);
-            }
-            plan.thicker = static_cast<int>(manner.thicker * refine_);
-            LocalEdit change = tryEdit(field_, refine_, plan);
-            if (option.euler ? change.euler != *option.euler : change.controlPoints.empty()) continue;
+        EditTrial trial(field_, refine_, option.plan);
+        for (const EditManner& manner : kManners) {
+            auto change = trial.attempt(manner, option.euler);
+            if (!change) continue;
             TopologyEdit edit = option.edit;
-            edit.volume = change.volume;
-            return Choice{edit, std::move(change), keyOf(option)};
+            edit.volume = change->volume;
+            return Choice{edit, std::move(*change), keyOf(option)};
         }
         return {};
     }
@@ -231,9 +193,8 @@ class Limiter {
         std::vector<const Choice*> order;
         for (const auto& choice : all)
             if (choice) order.push_back(&*choice);
-        std::stable_sort(order.begin(), order.end(), [](const Choice* a, const Choice* b) {
-            return std::abs(a->edit.volume) < std::abs(b->edit.volume);
-        });
+        std::stable_sort(order.begin(), order.end(),
+                         [](const Choice* a, const Choice* b) { return a->change.moved < b->change.moved; });
         std::vector<Choice> result;
         for (const Choice* choice : order) {
             if (result.size() == most) break;
@@ -298,7 +259,6 @@ class Limiter {
     SolidLimits limits_;
     double smallest_;
     const Progress& progress_;
-    std::span<const Manner> manners_ = kManners;
     std::set<OptionKey> useless_;  // on the whole mesh or on its surroundings alone
     struct Known {
         CoordBBox reads;

@@ -2,11 +2,14 @@
 // on a copy of the control points around, so that its effect on mesh and volume is known before the field is touched.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "hold/lattice_patch.h"
 #include "volume/field.h"
+#include "volume/row_ascent.h"
 
 namespace isowave {
 
@@ -14,24 +17,69 @@ struct EditPlan {
     bool fill = true;                    // the points become inside; else outside
     std::vector<openvdb::Coord> points;  // lattice points of the mesh: index space times refine
     std::vector<openvdb::Vec3d> places;  // and places between them, index space: where faces are decided
+    bool whole = false;  // the points are all of a part or cavity: their control points start beyond 0
+};
+
+// How a plan is carried out.
+struct EditManner {
     double margin =
         0.25;  // how far |F| is beyond 0 there, in mean differences of F over crossed lattice edges
-    // Lattice points this near the plan's may change with them: a plug or a cut may become thicker, which a lattice
-    // finer than the control points often needs. All others keep their sign.
-    int thicker = 0;
-    bool whole = false;  // the points are all of a part or cavity: their control points start beyond 0
+    // Lattice points nearer than a control point to the plan's may change with them: a plug or a cut may become thicker, which a
+    // lattice finer than the control points often needs. All others keep their sign.
+    bool thicker = false;
 };
 
 struct LocalEdit {
     openvdb::CoordBBox box;  // of the control points that may change, index space
     std::vector<std::pair<openvdb::Coord, float>> controlPoints;  // new values, where they differ
     double volume = 0;                                            // world units^3 that the solid gains
-    int euler = 0;  // change of the Euler number of the mesh of polygonize(field, refine)
+    double moved = 0;  // and that go to the other side, by lattice points: gains and losses do not cancel
 };
 
-// The least change (volume/row_ascent.h) of the control points within reach of the plan's points. Both numbers
-// are exact: the mesh of the surroundings before and after, cut out in the same way.
-LocalEdit tryEdit(const BSplineField& field, int refine, const EditPlan& plan);
+// One plan on its surroundings, tried in several manners.
+class EditTrial {
+  public:
+    // The plan outlives this. The field is read here only.
+    EditTrial(const BSplineField& field, int refine, const EditPlan& plan);
+
+    // The least change (volume/row_ascent.h) of the control points within reach of the plan's points; nothing where no change is needed, or
+    // where the Euler number of the mesh of polygonize(field, refine) does not change by `euler`. Volume and Euler number are exact:
+    // the surroundings before and after are cut out in the same way.
+    std::optional<LocalEdit> attempt(const EditManner& manner, std::optional<int> euler = {});
+
+  private:
+    void collectPlaces();
+    void cutOut(const BSplineField& field);
+    LatticePatch patch() const;
+    openvdb::CoordBBox rowBox() const;
+    double meanStep() const;
+
+    void foresee();
+    std::uint8_t& marksAt(const openvdb::Coord& c);
+    std::uint8_t marksAt(const openvdb::Coord& c) const;
+    bool mustKeep(const openvdb::Coord& c, bool thicker) const;
+
+    void startBeyond(double margin);
+    bool solve(const EditManner& manner, double far);
+    bool keepsFar(const EditManner& manner, double far) const;
+    double moved() const;
+    std::vector<FieldRow> rows(const EditManner& manner, double far) const;
+    FieldRow keptSign(const openvdb::Vec3d& at, double f) const;
+    void addCell(const openvdb::Coord& low, bool thicker, std::vector<FieldRow>& rows) const;
+    void addKept(const openvdb::Vec3d& latticePlace, std::vector<FieldRow>& rows) const;
+
+    int refine_;
+    const EditPlan& plan_;
+    std::vector<openvdb::Vec3d> places_;
+    openvdb::CoordBBox box_;
+    BSplineField local_;
+    openvdb::FloatGrid::Ptr before_;
+    LatticePatch patchBefore_, patchAfter_;
+    std::optional<double> volumeBefore_;
+    openvdb::CoordBBox planned_;       // of marks_
+    std::vector<std::uint8_t> marks_;  // signs to come, and which of them are the plan's
+    double step_ = 0, tolerance_ = 0;
+};
 
 // Puts an edit in. Control points outside I that it moves become known, four on each axis at a time, in both
 // grids; the shape takes F's sign at the lattice points within reach.

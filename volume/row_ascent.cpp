@@ -10,6 +10,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "base/vectors.h"
 #include "volume/cubic_weights.h"
 
 // Passes:
@@ -106,39 +107,49 @@ Row rowOf(const FieldRow& given, const openvdb::Coord& leaf) {
 
 // ---- one row on a block
 
+// Four neighbours in z, side by side: one register of AVX2, two of SSE2, the same bits.
+typedef double Quad __attribute__((vector_size(32)));
+ISOWAVE_INLINE Quad load(const double* from) {
+    Quad v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+ISOWAVE_INLINE void store(double* to, Quad v) { __builtin_memcpy(to, &v, sizeof v); }
+
 struct RowWeights {
     std::array<std::array<double, 4>, 4> xy;
-    std::array<double, 4> z;
-    explicit RowWeights(const Row& row) : z(cubicWeights(row.t[2])) {
-        const auto x = cubicWeights(row.t[0]), y = cubicWeights(row.t[1]);
+    Quad z;
+    ISOWAVE_INLINE explicit RowWeights(const Row& row) {
+        const auto x = cubicWeights(row.t[0]), y = cubicWeights(row.t[1]), along = cubicWeights(row.t[2]);
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j) xy[i][j] = x[i] * y[j];
+        z = load(along.data());
     }
 };
 
 constexpr int lineOf(int i, int j) { return (i * kSize + j) * kSize; }
 
-double dotWith(const RowWeights& w, const double* first) {
-    std::array<double, 4> sum{};
+ISOWAVE_INLINE double dotWith(const RowWeights& w, const double* first) {
+    Quad sum{};
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            for (int k = 0; k < 4; ++k) sum[k] += w.xy[i][j] * first[lineOf(i, j) + k];
-    return (sum[0] * w.z[0] + sum[1] * w.z[1]) + (sum[2] * w.z[2] + sum[3] * w.z[3]);
+        for (int j = 0; j < 4; ++j) sum += w.xy[i][j] * load(first + lineOf(i, j));
+    sum *= w.z;
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-void add(double scale, const RowWeights& w, double* first) {
+ISOWAVE_INLINE void add(double scale, const RowWeights& w, double* first) {
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
-            const double each = scale * w.xy[i][j];
-            for (int k = 0; k < 4; ++k) first[lineOf(i, j) + k] += each * w.z[k];
+            double* const line = first + lineOf(i, j);
+            store(line, load(line) + scale * w.xy[i][j] * w.z);
         }
 }
 
-void addWhereKnown(double scale, const RowWeights& w, const double* known, double* first) {
+ISOWAVE_INLINE void addWhereKnown(double scale, const RowWeights& w, const double* known, double* first) {
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
-            const double each = scale * w.xy[i][j];
-            for (int k = 0; k < 4; ++k) first[lineOf(i, j) + k] += each * w.z[k] * known[lineOf(i, j) + k];
+            double* const line = first + lineOf(i, j);
+            store(line, load(line) + scale * w.xy[i][j] * w.z * load(known + lineOf(i, j)));
         }
 }
 
@@ -162,11 +173,11 @@ struct Visit {
     bool active;
 };
 
-double violationOf(const Row& row, const RowWeights& w, const Block& block) {
+ISOWAVE_INLINE double violationOf(const Row& row, const RowWeights& w, const Block& block) {
     return row.sign * dotWith(w, &block.c[row.first]) + row.bound;
 }
 
-Visit visit(Row& row, Block& block, double tolerance) {
+ISOWAVE_INLINE Visit visit(Row& row, Block& block, double tolerance) {
     const RowWeights w(row);
     const double r = violationOf(row, w, block);
     double lambda = row.lambda + (r - row.rho * row.lambda) / (double(row.squares) + row.rho);
@@ -309,6 +320,10 @@ class Ascent {
 
     // -> the largest change of F at one of its rows.
     double visitAll(Group& g, Block& block) {
+        return vectors_ == Vectors::two ? visitAllBy(g, block) : visitAllByFour(g, block);
+    }
+    ISOWAVE_FOUR double visitAllByFour(Group& g, Block& block) { return visitAllBy(g, block); }
+    ISOWAVE_INLINE double visitAllBy(Group& g, Block& block) {
         double most = 0;
         g.active = 0;
         for (std::uint32_t i = g.begin; i < g.end; ++i) {
@@ -321,6 +336,13 @@ class Ascent {
     }
 
     double visitActive(Group& g, Block& block, bool backwards) {
+        return vectors_ == Vectors::two ? visitActiveBy(g, block, backwards)
+                                        : visitActiveByFour(g, block, backwards);
+    }
+    ISOWAVE_FOUR double visitActiveByFour(Group& g, Block& block, bool backwards) {
+        return visitActiveBy(g, block, backwards);
+    }
+    ISOWAVE_INLINE double visitActiveBy(Group& g, Block& block, bool backwards) {
         double most = 0;
         for (std::uint32_t k = 0; k < g.active; ++k) {
             const std::uint32_t i = active_[g.begin + (backwards ? g.active - 1 - k : k)];
@@ -409,6 +431,7 @@ class Ascent {
     }
 
     BSplineField& field_;
+    const Vectors vectors_ = widestVectors();
     AscentOptions options_;
     AscentReport report_;
     std::vector<Row> rows_;

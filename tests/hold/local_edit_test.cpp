@@ -1,0 +1,87 @@
+#include "hold/local_edit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "polygonize/fields.h"
+#include "polygonize/polygonize.h"
+#include "polygonize/topology.h"
+#include "zoo/zoo.h"
+
+namespace isowave {
+namespace {
+
+using openvdb::Coord;
+using testing::fieldFromDistance;
+using testing::sphere;
+using testing::torus;
+
+// A lattice point beside the surface of a ball of radius 6 that is outside.
+EditPlan bump(int refine) {
+    EditPlan plan;
+    plan.points = {Coord(static_cast<int>(std::ceil(6.05 * refine)), 0, 0)};
+    return plan;
+}
+
+TEST(EditTrial, MakesWhatIsPlannedAndLittleElseHoweverFineTheLattice) {
+    const BSplineField field = fieldFromDistance(12, sphere(6));
+    for (const int refine : {1, 2, 4}) {
+        const EditPlan plan = bump(refine);
+        EditTrial trial(field, refine, plan);
+        for (const EditManner manner :
+             {EditManner{0.25, false}, EditManner{0.25, true}, EditManner{1, true}}) {
+            const auto edit = trial.attempt(manner, 0);  // still a ball
+            ASSERT_TRUE(edit);
+            BSplineField changed = field;
+            changed.controlPoints = field.controlPoints->deepCopy();
+            changed.shape = field.shape->deepCopy();
+            apply(*edit, changed);
+            EXPECT_LT(evaluate(changed, plan.points[0].asVec3d() / refine), 0);
+            // A bump a voxel high and some two wide.
+            EXPECT_GT(edit->volume, 0);
+            EXPECT_LT(edit->moved, 4);
+        }
+    }
+}
+
+TEST(EditTrial, GivesTheVolumeOfTheWholeMesh) {
+    const BSplineField field = fieldFromDistance(12, sphere(6));
+    const EditPlan plan = bump(2);
+    const auto edit = EditTrial(field, 2, plan).attempt({});
+    ASSERT_TRUE(edit);
+    BSplineField changed = field;
+    changed.controlPoints = field.controlPoints->deepCopy();
+    changed.shape = field.shape->deepCopy();
+    apply(*edit, changed);
+    const auto volume = [](const BSplineField& f) { return topologyOf(polygonize(f, {.refine = 2})).volume; };
+    EXPECT_NEAR(edit->volume, volume(changed) - volume(field), 1e-6);
+}
+
+TEST(EditTrial, GivesNothingWhereTheEulerNumberWouldNotChangeAsAskedFor) {
+    const BSplineField field = fieldFromDistance(12, sphere(6));
+    const EditPlan plan = bump(2);
+    EditTrial trial(field, 2, plan);
+    EXPECT_FALSE(trial.attempt({}, 2));
+    EXPECT_TRUE(trial.attempt({}, 0));
+}
+
+TEST(EditTrial, GivesNothingWhereNothingNeedsToChange) {
+    const BSplineField field = fieldFromDistance(12, sphere(6));
+    EditPlan plan;
+    plan.points = {Coord(0, 0, 0)};  // deep inside
+    EXPECT_FALSE(EditTrial(field, 1, plan).attempt({}));
+}
+
+TEST(EditTrial, LeavesTheFieldAsItIs) {
+    const BSplineField field = fieldFromDistance(12, torus(5, 2));
+    const openvdb::FloatGrid::Ptr before = field.controlPoints->deepCopy();
+    const EditPlan plan = bump(1);
+    EditTrial(field, 1, plan).attempt({});
+    for (auto v = before->cbeginValueAll(); v; ++v)
+        ASSERT_EQ(field.controlPoints->tree().getValue(v.getCoord()), *v);
+}
+
+}  // namespace
+}  // namespace isowave
