@@ -223,8 +223,9 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
 }
 
 LevelMesh LevelMesher::make(int step, const BSplineField& given) {
-    LevelMesh level = chosen(step, fieldToDraw(step, given));
-    limit(level);
+    Draft draft = chosen(step, fieldToDraw(step, given));
+    limit(draft);
+    LevelMesh level = completed(std::move(draft));
     if (step == 0 || mustFall(step)) before_ = countsOf(level.report.topology);
     if (step == 0) {
         level0_->counts = *before_;
@@ -289,36 +290,37 @@ SpeckRemoval LevelMesher::drawBlended(LevelMesh& level, RegionBlend& blend) cons
     return removal;
 }
 
-LevelMesh LevelMesher::chosen(int step, const BSplineField& field) {
-    LevelMesh level = madeAt(sampled(step, field), step, field);
-    int refine = level.report.refine;
-    if (options_.hold == Holding::shift) return shifted(std::move(level), step, field);
-    if (!holds(step) || !mustFall(step) || options_.refine || openBorder_) return level;
-    while (refine < kFinestRefine && isMore(countsOf(level.report.topology), level0_->counts)) {
-        LevelMesh finer = madeAt({refine *= 2}, step, field);
-        if (!isMore(countsOf(level.report.topology), countsOf(finer.report.topology))) break;
-        level = std::move(finer);
+LevelMesher::Draft LevelMesher::chosen(int step, const BSplineField& field) {
+    Draft draft = draftedAt(sampled(step, field), step, field);
+    int refine = draft.level.report.refine;
+    if (options_.hold == Holding::shift) return shifted(std::move(draft), step, field);
+    if (!holds(step) || !mustFall(step) || options_.refine || openBorder_) return draft;
+    while (refine < kFinestRefine && isMore(draft.counts(), level0_->counts)) {
+        Draft finer = draftedAt({refine *= 2}, step, field);
+        if (!isMore(draft.counts(), finer.counts())) break;
+        draft = std::move(finer);
     }
-    return withoutGaps(std::move(level), step, field);
+    return withoutGaps(std::move(draft), step, field);
 }
 
 // A gap narrower than the level's voxel closes in some places and not in others, and each opening left is a handle. Where cuts and
 // fills would be too many, or the gap holds little, all of it is filled.
-LevelMesh LevelMesher::withoutGaps(LevelMesh level, int step, const BSplineField& field) {
-    const auto tooMany = [&](const LevelMesh& l) { return excess(countsOf(l.report.topology), *before_); };
-    const double volume = level.report.topology.volume;
+LevelMesher::Draft LevelMesher::withoutGaps(Draft draft, int step, const BSplineField& field) {
+    const auto tooMany = [&](const Draft& d) { return excess(d.counts(), *before_); };
+    const double volume = draft.level.report.topology.volume;
     for (const double closed : {0.5, 1.0}) {
-        if (!before_ || tooMany(level) == 0) break;
-        LevelMesh filled = madeAt({level.report.refine, {}, closed}, step, field);
-        const bool isLittle = std::abs(filled.report.topology.volume - volume) <= kLittle * volume;
-        if (tooMany(filled) < tooMany(level) && (isLittle || tooMany(level) > kMostEdits))
-            level = std::move(filled);
+        if (!before_ || tooMany(draft) == 0) break;
+        Draft filled = draftedAt({draft.level.report.refine, {}, closed}, step, field);
+        const bool isLittle = std::abs(filled.level.report.topology.volume - volume) <= kLittle * volume;
+        if (tooMany(filled) < tooMany(draft) && (isLittle || tooMany(draft) > kMostEdits))
+            draft = std::move(filled);
     }
-    return level;
+    return draft;
 }
 
 // From level to level nothing becomes more, and nothing is more than was asked for.
-void LevelMesher::limit(LevelMesh& level) {
+void LevelMesher::limit(Draft& draft) {
+    LevelMesh& level = draft.level;
     LevelReport& report = level.report;
     const bool falls =
         options_.hold == Holding::local && before_ && report.step != 0 && mustFall(report.step);
@@ -342,18 +344,18 @@ void LevelMesher::limit(LevelMesh& level) {
         limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
                    progress_);
     }
-    if (!report.edits.empty()) drawAll(level, {});
+    if (!report.edits.empty()) draw(draft);
 }
 
-LevelMesh LevelMesher::shifted(LevelMesh level, int step, const BSplineField& field) {
-    const int refine = level.report.refine;
-    if (step == 0 || openBorder_ || refine == kFinestRefine) return level;
-    LevelMesh finer = madeAt({2 * refine}, step, field);
-    const auto pieces = [](const LevelMesh& l) {
-        return l.report.topology.components + l.report.topology.genus;
+LevelMesher::Draft LevelMesher::shifted(Draft draft, int step, const BSplineField& field) {
+    const int refine = draft.level.report.refine;
+    if (step == 0 || openBorder_ || refine == kFinestRefine) return draft;
+    Draft finer = draftedAt({2 * refine}, step, field);
+    const auto pieces = [](const Draft& d) {
+        return d.level.report.topology.components + d.level.report.topology.genus;
     };
-    const bool fewer = !finer.mesh.triangles.empty() && pieces(finer) < pieces(level);
-    return fewer ? std::move(finer) : std::move(level);
+    const bool fewer = !finer.level.mesh.triangles.empty() && pieces(finer) < pieces(draft);
+    return fewer ? std::move(finer) : std::move(draft);
 }
 
 // Level 0 keeps its specks, but those of the fit, which the input does not have.
@@ -458,16 +460,27 @@ double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vect
     return iso;
 }
 
-SpeckRemoval LevelMesher::draw(LevelMesh& level, double smallest, TriangleMesh ready) {
+void LevelMesher::draw(Draft& draft, TriangleMesh ready) {
     const StageClock::Scope scope(clock_, "polygonize");
-    const int refine = level.report.refine;
+    LevelMesh& level = draft.level;
+    const int step = level.report.step, refine = level.report.refine;
     const bool isReady = level.iso == 0 && !ready.triangles.empty();
     level.mesh = isReady ? std::move(ready) : polygonizeAt(level.field, level.iso, refine);
-    if (level.report.step == 0) rememberLevel0(level.field, level.mesh, refine);
-    SpeckRemoval removal = removeSpecks(level.mesh, smallest);
-    if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
-    finish(level);
-    return removal;
+    if (step == 0) rememberLevel0(level.field, level.mesh, refine);
+    draft.removal = removeSpecks(level.mesh, smallestAt(step, level.field));
+    level.report.topology = topologyOf(level.mesh);
+}
+
+LevelMesh LevelMesher::completed(Draft draft) const {
+    LevelMesh& level = draft.level;
+    const int refine = level.report.refine;
+    {
+        const StageClock::Scope scope(clock_, "polygonize");
+        if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
+        if (compacts(refine) || options_.relax > 0 || openBorder_) finish(level);
+    }
+    putRemoval(level, draft.removal, smallestAt(level.report.step, level.field));
+    return std::move(draft.level);
 }
 
 // What comes last, whatever the mesh was made of.
@@ -511,8 +524,9 @@ void LevelMesher::hold(LevelMesh& level, double closedGaps) const {
                    held.gaps,    held.changed,      held.unmet};
 }
 
-LevelMesh LevelMesher::madeAt(Sampled sampled, int step, const BSplineField& field) {
-    LevelMesh level;
+LevelMesher::Draft LevelMesher::draftedAt(Sampled sampled, int step, const BSplineField& field) {
+    Draft draft;
+    LevelMesh& level = draft.level;
     LevelReport& report = level.report;
     level.field = field;
     report.step = step;
@@ -522,18 +536,12 @@ LevelMesh LevelMesher::madeAt(Sampled sampled, int step, const BSplineField& fie
     std::optional<std::vector<double>> thin;
     if (step != 0 && level0_ && level0_->volume > 0 && level0_->thin) thin = thinValues(field, report.refine);
     level.iso = isoFor(level, thin);
-    drawAll(level, thin, std::move(sampled.mesh));
-    return level;
-}
-
-void LevelMesher::drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin,
-                          TriangleMesh ready) {
-    LevelReport& report = level.report;
-    const double smallest = smallestAt(report.step, level.field);
-    putRemoval(level, draw(level, smallest, std::move(ready)), smallest);
-    if (!thin) return;
-    report.thinKept = shareInside(*thin, level.iso);
-    report.thinKeptAtIso0 = shareInside(*thin, 0);
+    draw(draft, std::move(sampled.mesh));
+    if (thin) {
+        report.thinKept = shareInside(*thin, level.iso);
+        report.thinKeptAtIso0 = shareInside(*thin, 0);
+    }
+    return draft;
 }
 
 void LevelMesher::putRemoval(LevelMesh& level, const SpeckRemoval& removal, double smallest) const {

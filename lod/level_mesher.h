@@ -74,16 +74,22 @@ class LevelMesher {
     Sampled sampled(int step, const BSplineField& field);
     Sampled sampledLevel0(const BSplineField& field);
     Sampled sampledAsInput(const BSplineField& field) const;
-    LevelMesh shifted(LevelMesh level, int step, const BSplineField& field);
-    LevelMesh chosen(int step, const BSplineField& field);
-    LevelMesh withoutGaps(LevelMesh level, int step, const BSplineField& field);
-    void limit(LevelMesh& level);
-    void drawAll(LevelMesh& level, const std::optional<std::vector<double>>& thin, TriangleMesh ready = {});
+    // A level whose mesh has its parts, handles, cavities and volume, and all its triangles.
+    struct Draft {
+        LevelMesh level;
+        SpeckRemoval removal;
+        SolidCounts counts() const { return countsOf(level.report.topology); }
+    };
+    Draft draftedAt(Sampled sampled, int step, const BSplineField& field);
+    Draft shifted(Draft draft, int step, const BSplineField& field);
+    Draft chosen(int step, const BSplineField& field);
+    Draft withoutGaps(Draft draft, int step, const BSplineField& field);
+    void limit(Draft& draft);
+    LevelMesh completed(Draft draft) const;
     void putRemoval(LevelMesh& level, const SpeckRemoval& removal, double smallest) const;
     void addRegions(LevelMesh& level);
     SpeckRemoval drawBlended(LevelMesh& level, RegionBlend& blend) const;
     void finish(LevelMesh& level) const;
-    LevelMesh madeAt(Sampled sampled, int step, const BSplineField& field);
     bool holds(int step) const;
     bool mustFall(int step) const;
     void hold(LevelMesh& level, double closedGaps) const;
@@ -91,7 +97,7 @@ class LevelMesher {
     void tellDifference(const LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;
-    SpeckRemoval draw(LevelMesh& level, double smallest, TriangleMesh ready);
+    void draw(Draft& draft, TriangleMesh ready = {});
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
     bool compacts(int refine) const;
     void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine);
