@@ -9,6 +9,7 @@
 #include "base/peak_memory.h"
 #include "isowave/error.h"
 #include "lod/budgets.h"
+#include "lod/field_state.h"
 #include "lod/level_mesher.h"
 #include "lod/pyramid_state.h"
 #include "lod/source.h"
@@ -286,7 +287,10 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     return ladder;
 }
 
-Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
+namespace {
+
+// One step as the ladder has it.
+lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
     const std::string name = solid.input().path;
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
@@ -305,7 +309,21 @@ Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progre
     lod::putField(made.report, field);
     if (options.deviation) lod::putDeviation(made.report, made, progress);
     made.report.seconds = clock.secondsSoFar() - begin;
+    return made;
+}
+
+}  // namespace
+
+Level makeLevel(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
+    lod::LevelMesh made = levelMeshOf(std::move(solid), step, options, progress);
     return {std::move(made.report), std::move(made.mesh)};
+}
+
+Field makeLevelField(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
+    if (options.hold == Holding::shift || options.preserveVolume)
+        throw UsageError(
+            "a level that is moved as a whole is not the zero set of a field; hold locally or not at all");
+    return FieldAccess::make(levelMeshOf(std::move(solid), step, options, progress).field);
 }
 
 std::vector<LevelReport> describeLevels(const Pyramid& pyramid, const LevelOptions& options,

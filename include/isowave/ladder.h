@@ -28,6 +28,7 @@
 #include <variant>
 #include <vector>
 
+#include "isowave/field.h"
 #include "isowave/measure.h"
 #include "isowave/mesh.h"
 #include "isowave/progress.h"
@@ -289,6 +290,11 @@ ISOWAVE_EXPORT Ladder makeBudget(Solid solid, const BudgetOptions& budgets, cons
 // itself: nothing is compared with other levels. Throws InputError where the solid does not go so far.
 ISOWAVE_EXPORT Level makeLevel(Solid solid, int step, const LevelOptions& options = {},
                                const Progress& progress = {});
+
+// The field whose zero set that mesh is: with what holds thin walls, cuts and fills, and regions put in. fieldOf(solid, step) is the wavelet
+// field without these. Throws as makeLevel() does, UsageError for options whose mesh is no zero set (Holding::shift, preserveVolume).
+ISOWAVE_EXPORT Field makeLevelField(Solid solid, int step, const LevelOptions& options = {},
+                                    const Progress& progress = {});
 
 // The levels of a pyramid without meshes, until nothing is left: what `isowave info` tells.
 ISOWAVE_EXPORT std::vector<LevelReport> describeLevels(const Pyramid& pyramid,

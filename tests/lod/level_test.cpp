@@ -115,6 +115,20 @@ TEST(Levels, AreTheSameAloneAsInALadder) {
     }
 }
 
+TEST(Levels, AreTheZeroSetsOfTheirFields) {
+    const Level level = makeLevel(wallSolid(), 6);
+    const Field field = makeLevelField(wallSolid(), 6);
+    const MeshTopology held = topologyOf(field.polygonize({.refine = level.report.refine})),
+                       plain =
+                           topologyOf(fieldOf(wallSolid(), 6).polygonize({.refine = level.report.refine}));
+    EXPECT_EQ(held.genus, level.report.topology.genus);
+    EXPECT_EQ(held.parts, level.report.topology.parts);
+    EXPECT_NEAR(held.volume, level.report.topology.volume, 0.02 * held.volume) << "collapsed";
+    EXPECT_GT(plain.genus, held.genus) << "torn";
+    EXPECT_THROW(makeLevelField(wallSolid(), 6, {.hold = Holding::shift}), UsageError);
+    EXPECT_THROW(makeLevelField(wallSolid(), 6, {.preserveVolume = true}), UsageError);
+}
+
 TEST(Levels, RefuseTwoReasonsForOneIsoValue) {
     EXPECT_THROW(makeLadder(wallSolid(), {.hold = Holding::shift, .preserveVolume = true}), UsageError);
     const Image wall = distanceImage({62, 62, 36}, framedWall);

@@ -81,6 +81,22 @@ TEST_F(TorusPyramid, GivesItsFieldAsAGridForOtherTools) {
     EXPECT_GT(grid->tree().getValue(openvdb::Coord::round(grid->transform().worldToIndex({0, 0, 0}))), 0);
 }
 
+TEST_F(TorusPyramid, GivesTheFieldOfALevelThatIsHeld) {
+    // The ring's tube is thin at level 3.
+    const auto controlPoints = [&](const char* hold) {
+        const std::filesystem::path file = folder / (std::string(hold) + ".vdb");
+        succeed({"field", pyramid(), "--level", "3", "--hold", hold, "-o", file.string()});
+        openvdb::initialize();
+        openvdb::io::File vdb(file.string());
+        vdb.open();
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(vdb.readGrid("field"));
+    };
+    const auto plain = controlPoints("none"), held = controlPoints("local");
+    int changed = 0;
+    for (auto c = held->cbeginValueOn(); c; ++c) changed += *c != plain->tree().getValue(c.getCoord());
+    EXPECT_GT(changed, 0);
+}
+
 TEST_F(TorusPyramid, IsListedStepByStep) {
     const Result text = succeed({"info", pyramid()});
     EXPECT_NE(text.out.find("coefficients stored for"), std::string::npos);

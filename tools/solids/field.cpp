@@ -4,8 +4,10 @@
 #include "base/number_text.h"
 #include "isowave/error.h"
 #include "isowave/field.h"
+#include "isowave/ladder.h"
 #include "tools/commands.h"
 #include "tools/console.h"
+#include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/solids/solid_options.h"
 
@@ -22,6 +24,12 @@ class FieldCommand : public Command {
                "minus K."}) {
         declareOutput("the field's file");
         step_.declare(options_);
+        options_.value("--hold", "local|none", "none",
+                       "the wavelet field of the step; or with what keeps thin walls whole and handles from "
+                       "becoming more put in, as `isowave mesh` has it",
+                       [&](const std::string& v) {
+                           hold_ = choice<Holding>(v, {{"local", Holding::local}, {"none", Holding::none}});
+                       });
         declareSolid(options_, solid_);
         declareThreads();
         declareMaxMemory(options_, solid_);
@@ -33,8 +41,7 @@ class FieldCommand : public Command {
         if (output_->extension() != ".vdb") throw UsageError("-o: a field is a .vdb file; name it so");
         const int step = step_.wanted();
         OutputFile out(*output_);
-        solid_.finestStep = step;
-        const Field field = fieldOf(open(arguments[0], solid_, console.progress()), step, console.progress());
+        const Field field = made(step, console.progress());
         field.save(*output_);
         out.commit();
 
@@ -46,7 +53,15 @@ class FieldCommand : public Command {
     }
 
   private:
+    Field made(int step, const Progress& progress) {
+        if (hold_ == Holding::local)
+            return makeLevelField(open(arguments[0], solid_, progress), step, {}, progress);
+        solid_.finestStep = step;
+        return fieldOf(open(arguments[0], solid_, progress), step, progress);
+    }
+
     StepChoice step_;
+    Holding hold_ = Holding::none;
     SolidOptions solid_;
 };
 
