@@ -37,11 +37,12 @@ bool needsLevel0(const LevelOptions& options) {
 namespace lod {
 namespace {
 
-constexpr double kPreserved = 1e-4;      // of the volume to keep
-constexpr std::int64_t kMostEdits = 40;  // that nobody asked for: they take seconds
-constexpr double kLittle = 0.03;         // of the volume: gaps with so much are filled
-constexpr double kHeldVoxels = 1.5;      // walls so thick are held as they are at any place
-constexpr int kFinestRefine = 4;         // that polygonize() takes
+constexpr double kPreserved = 1e-4;       // of the volume to keep
+constexpr std::int64_t kManyEdits = 40;   // gaps are filled instead
+constexpr std::int64_t kMostEdits = 150;  // that nobody asked for: each takes up to half a second
+constexpr double kLittle = 0.03;          // of the volume: gaps with so much are filled
+constexpr double kHeldVoxels = 1.5;       // walls so thick are held as they are at any place
+constexpr int kFinestRefine = 4;          // that polygonize() takes
 
 void checkOptions(const LevelOptions& options, bool openBorder) {
     requireRefine(options.refine.value_or(1));
@@ -312,7 +313,7 @@ LevelMesher::Draft LevelMesher::withoutGaps(Draft draft, int step, const BSpline
         if (!before_ || tooMany(draft) == 0) break;
         Draft filled = draftedAt({draft.level.report.refine, {}, closed}, step, field);
         const bool isLittle = std::abs(filled.level.report.topology.volume - volume) <= kLittle * volume;
-        if (tooMany(filled) < tooMany(draft) && (isLittle || tooMany(draft) > kMostEdits))
+        if (tooMany(filled) < tooMany(draft) && (isLittle || tooMany(draft) > kManyEdits))
             draft = std::move(filled);
     }
     return draft;

@@ -133,6 +133,20 @@ TEST(CutOrFill, FillsACavity) {
     EXPECT_LT(std::abs(edits.edits[0].volume), 4 * kPi / 3 * std::pow(1.9, 3));
 }
 
+TEST(CutOrFill, OpensACavityInWhoseMiddleFIsFarBeyondK) {
+    BSplineField field =
+        fieldFromDistance(16, [](const Vec3d& x) { return std::max(sphere(9)(x), -sphere(7.5)(x)); });
+    auto values = field.controlPoints->getAccessor();  // as holding what is thin may leave them
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) values.setValue(Coord(x, y, z), static_cast<float>(5 * field.K));
+    const TopologyEdits edits = limitTopology(field, 1, {.cavities = 0}, 0);
+    EXPECT_EQ(edits.before, (SolidCounts{1, 0, 1}));
+    EXPECT_EQ(edits.after, (SolidCounts{1, 0, 0})) << edits.why;
+    ASSERT_EQ(edits.edits.size(), 1u);
+    EXPECT_EQ(edits.edits[0].kind, Kind::cut) << "less than to fill it";
+}
+
 TEST(CutOrFill, LeavesTenOfThirtySixHoles) {
     BSplineField field = fieldFromDistance(28, plateWithHoles(6, 2.2, 8, 2));
     const TopologyEdits edits = limitTopology(field, 1, {.handles = 10}, 0);
