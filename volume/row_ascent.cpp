@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "base/vectors.h"
-#include "volume/cubic_weights.h"
 
 // Passes:
 //   group   rows by the leaf of their first control point, shuffled inside it by a hash of their places
@@ -120,10 +119,15 @@ struct RowWeights {
     std::array<std::array<double, 4>, 4> xy;
     Quad z;
     ISOWAVE_INLINE explicit RowWeights(const Row& row) {
-        const auto x = cubicWeights(row.t[0]), y = cubicWeights(row.t[1]), along = cubicWeights(row.t[2]);
+        const auto x = sixfold(row.t[0]), y = sixfold(row.t[1]), along = sixfold(row.t[2]);
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j) xy[i][j] = x[i] * y[j];
-        z = load(along.data());
+        z = load(along.data()) * (1.0 / (6 * 6 * 6));
+    }
+    // cubicWeights() without its twelve divisions, which cost as much as the row's sum.
+    ISOWAVE_INLINE static std::array<double, 4> sixfold(double t) {
+        const double u = 1 - t, tt = t * t, ttt = tt * t;
+        return {u * u * u, 3 * ttt - 6 * tt + 4, -3 * ttt + 3 * tt + 3 * t + 1, ttt};
     }
 };
 
