@@ -56,8 +56,8 @@ constexpr double kWorthTrying = 4;
 constexpr double kDeepest = 0.95;
 // Above all F: what holds walls moves control points beyond K, and a cavity that is deeper than what is looked at is none.
 constexpr double kEverything = 1e30;
-// Points of decidedLattice(): persistence takes about 1 us each.
-constexpr double kMostAtFirst = 8e6, kMostDecided = 4e7;
+// Points of a lattice: persistence takes about 1 us each.
+constexpr double kMostAtFirst = 8e6, kMostPoints = 4e7;
 // More are tried than are too many: some do not work, some touch each other.
 constexpr std::size_t kSpare = 16;
 
@@ -93,7 +93,7 @@ class Limiter {
     // times as long.
     bool round() {
         for (const auto& depth : {TopologyCandidates::Depth{kDeepest * field_.K, kMostAtFirst},
-                                  TopologyCandidates::Depth{kEverything, kMostDecided}}) {
+                                  TopologyCandidates::Depth{kEverything, kMostPoints}}) {
             const TopologyCandidates candidates(field_, refine_, smallest_, depth, plugs_, useless_,
                                                 progress_);
             for (const What what : kOrder)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
 #include "hold/plug.h"
 #include "hold/until_stopped.h"
@@ -60,8 +61,9 @@ TopologyCandidates::TopologyCandidates(const BSplineField& field, int refine, do
       refine_(refine),
       fine_(refinedField(field, refine, progress)) {
     smallest_ = smallestPart / nodeVolume(field.transform()) * refine * refine * refine / 2;
-    twice_ = latticePoints(field, 2 * refine) <= depth.decided;
-    found_ = twice_ ? decidedLattice(field, refine, progress) : meshLattice(field, refine, progress);
+    int finer = 2 * refine;
+    while (finer > 1 && latticePoints(field, finer) > depth.points) finer /= 2;
+    found_ = finer > refine ? decidedLattice(field, refine, progress) : meshLattice(field, finer, progress);
     constexpr float kBelowZero = -std::numeric_limits<float>::denorm_min();
     classes_ = classesAt(found_.function, kBelowZero, static_cast<float>(depth.last), progress);
 }
@@ -78,7 +80,7 @@ TopologyEdit TopologyCandidates::editAt(const Vec3d& place, TopologyEdit::What w
 // face or cell, those on the side that will change, the one with the least |F| first.
 std::vector<Coord> TopologyCandidates::anchors(std::int64_t at, bool fill) const {
     const Coord c = found_.coordOf(at);
-    if (!twice_) return {c};
+    if (!isDecided()) return {scaled(c, refine_ / found_.finer)};
     std::vector<std::pair<float, Coord>> found;
     for (int k = 0; k < 8; ++k) {
         const Coord corner = c.offsetBy(k >> 2 & c[0] & 1 ? 1 : -(c[0] & 1),
@@ -134,7 +136,7 @@ void TopologyCandidates::addPlug(std::int64_t at, TopologyEdit::What what, bool 
 void TopologyCandidates::addDecider(std::int64_t at, TopologyEdit::What what, bool fill,
                                     EditOptions& options) const {
     const Coord c = found_.coordOf(at);
-    if (!twice_ || parityOf(c) < 2) return;
+    if (!isDecided() || parityOf(c) < 2) return;
     unsigned pattern = 0;
     for (int k = 0; k < kCellCorners; ++k) {
         const int x = k & 1, y = k >> 1 & 1, z = k >> 2;
@@ -188,14 +190,43 @@ TopologyCandidates::Points TopologyCandidates::flooded(std::int64_t from) const 
     return points;
 }
 
+// The same on the lattice that the mesh samples, where classes are found on a coarser one. Nothing where it is large.
+std::vector<Coord> TopologyCandidates::floodedOnMesh(const Coord& from) const {
+    constexpr std::size_t kMost = 100000;
+    const auto isInside = [&](const Coord& c) { return evaluate(fine_, c.asVec3d()) < 0; };
+    const bool inside = isInside(from);
+    std::unordered_set<Coord> seen{from};
+    std::vector<Coord> points{from};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points.size() > kMost) return {};
+        const Coord c = points[i];
+        for (int n = 0; n < 27; ++n) {
+            const Coord d(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+            if (inside && std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) != 1) continue;
+            if (isInside(c + d) == inside && seen.insert(c + d).second) points.push_back(c + d);
+        }
+    }
+    std::sort(points.begin(), points.end());
+    return points;
+}
+
+// Cells of the mesh's lattice.
+double TopologyCandidates::cellsOf(const Points& points) const {
+    return double(points.size()) * std::pow(double(refine_) / found_.finer, 3);
+}
+
 void TopologyCandidates::addWhole(std::int64_t from, const Points& points, TopologyEdit::What what, bool fill,
                                   EditOptions& options) const {
     EditOption option{editAt(found_.placeOf(from), what, fill), {}, 0, {}};
     option.plan.fill = fill;
     option.plan.whole = true;
-    for (const std::int64_t p : points) {
-        const Coord c = found_.coordOf(p);
-        if (!twice_ || parityOf(c) == 0) option.plan.points.push_back(twice_ ? c >> 1 : c);
+    if (found_.finer < refine_) {
+        option.plan.points = floodedOnMesh(scaled(found_.coordOf(from), refine_ / found_.finer));
+    } else {
+        for (const std::int64_t p : points) {
+            const Coord c = found_.coordOf(p);
+            if (!isDecided() || parityOf(c) == 0) option.plan.points.push_back(isDecided() ? c >> 1 : c);
+        }
     }
     option.estimate = double(option.plan.points.size());
     if (!option.plan.points.empty()) options.push_back(std::move(option));
@@ -211,7 +242,7 @@ std::size_t TopologyCandidates::largestPart() const {
 EditOptions TopologyCandidates::part(const PersistentClass& c, std::size_t largest) const {
     EditOptions options;
     const Points points = flooded(c.birthPoint);
-    if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
+    if (cellsOf(points) < smallest_) return options;
     if (points.size() < largest) addWhole(c.birthPoint, points, What::part, false, options);
     if (c.deathPoint == PersistentClass::kNever) return options;
     addDecider(c.deathPoint, What::part, true, options);
@@ -223,7 +254,7 @@ EditOptions TopologyCandidates::cavity(const PersistentClass& c) const {
     EditOptions options;
     if (c.deathPoint != PersistentClass::kNever) {
         const Points points = flooded(c.deathPoint);
-        if (double(points.size()) / (twice_ ? 8 : 1) < smallest_) return options;
+        if (cellsOf(points) < smallest_) return options;
         addWhole(c.deathPoint, points, What::cavity, true, options);
     }
     addDecider(c.birthPoint, What::cavity, false, options);

@@ -62,7 +62,8 @@ class TopologyCandidates {
     struct Depth {
         double last;  // of F: up to which holes, gaps and cavities are followed
         double
-            decided;  // points up to which decidedLattice() is used; beyond, the mesh's own with an eighth of them
+            points;  // of the lattice on which they are found: decidedLattice(), or the finest of the mesh's own and
+                     // coarser ones that has no more
     };
     // Of the field's mesh at `refine`. Parts and cavities smaller than `smallestPart`/2 (world units^3) are left
     // out.
@@ -80,7 +81,10 @@ class TopologyCandidates {
     EditOptions handle(const PersistentClass& c) const;
     EditOptions part(const PersistentClass& c, std::size_t largest) const;
     EditOptions cavity(const PersistentClass& c) const;
+    bool isDecided() const { return found_.finer > refine_; }
     Points flooded(std::int64_t from) const;
+    std::vector<openvdb::Coord> floodedOnMesh(const openvdb::Coord& from) const;
+    double cellsOf(const Points& points) const;
     std::size_t largestPart() const;
     struct PlugStart {
         openvdb::Coord at;  // of the lattice of the mesh, or of the control points
@@ -102,8 +106,7 @@ class TopologyCandidates {
     int refine_;
     double smallest_;    // in lattice cells of the mesh
     BSplineField fine_;  // on the lattice that the mesh samples
-    MeshLattice found_;  // where classes are found: that lattice, or twice as fine
-    bool twice_;
+    MeshLattice found_;  // where classes are found: twice as fine as that lattice, as fine, or coarser
     std::vector<PersistentClass> classes_;
 };
 
