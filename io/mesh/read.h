@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/peak_memory.h"
 #include "io/mesh/soup.h"
 #include "isowave/mesh.h"
 
@@ -23,7 +24,10 @@ struct MeshFile {
     double step = 0;
     std::string droppedNote;  // "colours and materials are not kept"; empty where all is
 };
-MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress = {});
+// Files that gzip has compressed, by their first two bytes, are inflated, to `mostBytes` at most; their format goes by the name
+// without .gz.
+MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress = {},
+                      double mostBytes = usualMemoryLimit());
 
 // "STL, OBJ, ...": what is read.
 std::string meshInputNames();
