@@ -114,9 +114,14 @@ PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::stri
             return readOff(bytes, name);
         case MeshFormat::glb:
             return readGlb(bytes, name);
-        default:
-            return readPly(bytes, name);
+        case MeshFormat::vtp:
+            return readVtp(bytes, name);
+        case MeshFormat::threeMf:
+            return readThreeMf(bytes, name);
+        case MeshFormat::ply:
+            break;
     }
+    return readPly(bytes, name);
 }
 
 std::string adviceFor(const std::filesystem::path& path) {
@@ -184,9 +189,7 @@ MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progres
     progress("reading", 0.0);
     const std::string bytes = readInflatedFile(path, "a mesh file", mostBytes);
     progress("reading", 0.2);
-    PolygonSoup soup = extension == ".vtp"   ? readVtp(bytes, name)
-                       : extension == ".3mf" ? readThreeMf(bytes, name)
-                                             : parseMesh(bytes, meshFormatOf(plain), name);
+    PolygonSoup soup = parseMesh(bytes, meshFormatOf(plain), name);
     progress("reading", 0.8);
     checkFaces(name, soup);
     checkPoints(name, soup.points, soup.float32);

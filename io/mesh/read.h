@@ -11,8 +11,7 @@
 
 namespace isowave {
 
-// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h); xml/vtp.h and xml/three_mf.h read what has
-// no MeshFormat, which is what is written.
+// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h, xml/vtp.h, xml/three_mf.h).
 PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
 // What readMesh() reads, and what only a repair and a report ask for.

@@ -275,7 +275,7 @@ class Level(Adapters):
         return self._ladder._field(self.step)
 
     def save(self, path: PathLike, *, space: Optional[str] = None) -> None:
-        """Writes the mesh as .stl, .ply, .obj, .off or .glb; the file appears whole or not at all.
+        """Writes the mesh as .stl, .ply, .obj, .off, .glb, .vtp or .3mf; the file appears whole or not at all.
 
         space: "lps" or "ras", the axes of the written coordinates, for images.
         """
@@ -347,7 +347,7 @@ class Ladder(Sequence[Level]):
 
         ``save("out/cranium")`` makes out/cranium/cranium_L0.ply, ... All files appear at once, or none does.
 
-        format: stl, ply, obj, off or glb.
+        format: stl, ply, obj, off, glb, vtp or 3mf.
         space: "lps" or "ras", the axes of the written coordinates, for images and meshes that say SPACE=.
 
         Raises UsageError for a file that is the ladder's own input, OperationError where writing fails.

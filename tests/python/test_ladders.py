@@ -117,7 +117,7 @@ def test_budgets_come_after_levels(tmp_path):
 
 
 def test_one_level_is_saved_in_the_format_of_its_name(gear, tmp_path):
-    for extension in ("stl", "ply", "obj", "off", "glb"):
+    for extension in ("stl", "ply", "obj", "off", "glb", "vtp", "3mf"):
         gear[2].save(tmp_path / f"new/part.{extension}")
         assert isowave.check(tmp_path / f"new/part.{extension}")
     with pytest.raises(isowave.InputError):

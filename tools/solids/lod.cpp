@@ -306,9 +306,10 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
                const Progress& progress) const {
     Solid solid = open(input, solid_, progress);
     const std::string unit = unitShown(solid);
+    const MeshWriteOptions options{space_.of(solid), metresPerUnitOf(solid)};
     MeshWriter writer{.names = names,
                       .format = format_.value_or(MeshFormat::ply),
-                      .options = {space_.of(solid), metresPerUnitOf(solid)},
+                      .options = options,
                       .out = out,
                       .page = pageOf(solid, out.name()),
                       .lods = lodsOf(solid),
