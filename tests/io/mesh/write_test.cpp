@@ -405,6 +405,64 @@ TEST(MeshWriter, BytesDependOnTheMeshAlone) {
     }
 }
 
+// ---- distances to level 0
+
+TEST(MeshWriter, DistancesAreAPropertyOfPly) {
+    const TriangleMesh mesh = ringMesh();
+    MeshWriteOptions options;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        options.distanceToLevel0.push_back(0.25F * static_cast<float>(i));
+    const fs::path path = freshFolder("distances") / "a.ply";
+    writeMesh(path, mesh, MeshFormat::ply, options);
+    const std::string bytes = bytesOf(path);
+    const std::string last = "property float nz\nproperty float distance_to_level0\nelement face";
+    EXPECT_NE(bytes.find(last), std::string::npos);
+    constexpr std::size_t kVertex = 7 * sizeof(float);
+    std::size_t at = bytes.find("end_header\n") + 11 + 6 * sizeof(float);
+    for (std::size_t i = 0; i < mesh.points.size(); ++i, at += kVertex) {
+        std::size_t here = at;
+        ASSERT_EQ(take<float>(bytes, here), options.distanceToLevel0[i]);
+    }
+    EXPECT_EQ(isowave::readMesh(path).triangles, mesh.triangles);
+    fs::remove_all(path.parent_path());
+}
+
+// Pale for no distance, dark for the range; linear light of sRGB 226 222 211 and 66 10 62 (IEC 61966-2-1).
+TEST(MeshWriter, DistancesAreAnAttributeAndColoursOfGlb) {
+    const TriangleMesh mesh = ringMesh();
+    MeshWriteOptions options;
+    options.distanceToLevel0.assign(mesh.points.size(), 0);
+    options.distanceToLevel0[1] = 2;
+    options.distanceToLevel0[2] = 0.5;
+    const fs::path path = freshFolder("distances") / "a.glb";
+    writeMesh(path, mesh, MeshFormat::glb, options);
+    const std::string bytes = bytesOf(path);
+    const nlohmann::json json = readGlb(bytes).json;
+    fs::remove_all(path.parent_path());
+    const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+    const std::size_t binary = bytes.size() - json["buffers"][0]["byteLength"].get<std::size_t>();
+    const auto startOf = [&](const char* name) {
+        const auto& accessor = json["accessors"][attributes[name].get<std::size_t>()];
+        EXPECT_EQ(accessor["count"], mesh.points.size());
+        return binary + json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"]
+                            .get<std::size_t>();
+    };
+    std::size_t at = startOf("_DISTANCE_TO_LEVEL0");
+    EXPECT_EQ(take<float>(bytes, at), 0);
+    EXPECT_EQ(take<float>(bytes, at), 2);
+    EXPECT_EQ(take<float>(bytes, at), 0.5F);
+    at = startOf("COLOR_0");
+    const auto linear = [](double c) { return std::pow((c / 255 + 0.055) / 1.055, 2.4); };
+    const std::array<double, 3> pale{linear(226), linear(222), linear(211)},
+        dark{linear(66), 10 / 255.0 / 12.92, linear(62)};
+    for (const auto& expected : {pale, dark}) {
+        const auto colour = take<std::array<std::uint16_t, 4>>(bytes, at);
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(colour[k] / 65'535.0, expected[k], 1e-5);
+        EXPECT_EQ(colour[3], 65'535);
+    }
+    EXPECT_EQ(json["meshes"][0]["extras"]["distance_of_last_colour"], 2);
+}
+
 // ---- float32
 
 TEST(MeshWriter, PlyTurnsToFloat64FarFromTheOrigin) {
