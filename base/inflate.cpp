@@ -119,14 +119,17 @@ class Gunzip {
 
     void refuseTooLarge() const {
         const auto refuse = [&](const std::string& what) {
-            fail(fmt::format(
-                "is gzip of {} that inflates to more than {}; gunzip it and look whether it is what "
-                "it should be",
-                bytesText(static_cast<double>(packed_.size())), what));
+            fail(fmt::format("is gzip of {} that inflates to more than {}",
+                             bytesText(static_cast<double>(packed_.size())), what));
         };
-        if (held_ > most_) refuse(bytesText(static_cast<double>(most_)) + ", the limit of memory");
+        if (held_ > most_)
+            refuse(bytesText(static_cast<double>(most_)) +
+                   ", the limit of memory; give a larger --max-memory, or gunzip it first");
         if (held_ > kSuspicious && held_ / kMostRatio > packed_.size())
-            refuse(fmt::format("{} times as much, which no mesh and no image does", kMostRatio));
+            refuse(fmt::format(
+                "{} times as much, which no mesh and no image does; gunzip it and look whether it is "
+                "what it should be",
+                kMostRatio));
     }
 
     // REQUIRES: `bytes_` is full.
