@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "base/file_bytes.h"
+#include "base/inflate.h"
 #include "isowave/error.h"
 
 namespace isowave {
@@ -25,14 +26,23 @@ std::string everyByte(const FileDescriptor& file) {
     }
 }
 
+std::string filledFile(const std::filesystem::path& path, std::string_view expected) {
+    std::string bytes = everyByte(FileDescriptor(path, expected));
+    if (bytes.empty()) throw InputError(path.string(), fmt::format("is empty; expected {}", expected));
+    return bytes;
+}
+
 }  // namespace
 
 std::string readFile(const std::filesystem::path& path, std::string_view expected) {
-    const std::string name = path.string();
-    std::string bytes = everyByte(FileDescriptor(path, expected));
-    if (bytes.empty()) throw InputError(name, fmt::format("is empty; expected {}", expected));
-    if (bytes.starts_with("\x1f\x8b")) throw InputError(name, "is compressed by gzip; gunzip it first");
+    std::string bytes = filledFile(path, expected);
+    if (isGzip(bytes)) throw InputError(path.string(), "is compressed by gzip; gunzip it first");
     return bytes;
+}
+
+std::string readInflatedFile(const std::filesystem::path& path, std::string_view expected, double most) {
+    std::string bytes = filledFile(path, expected);
+    return isGzip(bytes) ? gunzipped(bytes, path.string(), static_cast<std::size_t>(most)) : bytes;
 }
 
 }  // namespace isowave

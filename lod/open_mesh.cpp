@@ -262,8 +262,8 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 }  // namespace
 
 LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
-                    const std::optional<std::string>& unit) {
-    MeshFile file = readMeshFile(path, progress);
+                    const std::optional<std::string>& unit, const std::optional<double>& maxMemory) {
+    MeshFile file = readMeshFile(path, progress, memoryLimit(maxMemory));
     LoadedMesh loaded;
     loaded.mesh = std::move(file.mesh);
     loaded.format = file.info.format;
@@ -290,7 +290,8 @@ LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
 MeshPlan planMesh(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress) {
     checkOptions(options);
     const std::string name = path.string();
-    ClosedMesh input = closed(loadMesh(path, progress, options.unit), name, options, progress);
+    ClosedMesh input =
+        closed(loadMesh(path, progress, options.unit, options.maxMemory), name, options, progress);
     for (const std::string& note : input.repair.notes) progress.say(note);
     const double voxel = voxelSizeFor(input.loaded.mesh, options, name, progress);
     MeshPlan plan;
@@ -307,7 +308,7 @@ Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& opt
     const std::string name = path.string();
     const ClosedMesh input = [&] {
         const StageClock::Scope scope(clock, "read");
-        return closed(loadMesh(path, progress, options.unit), name, options, progress);
+        return closed(loadMesh(path, progress, options.unit, options.maxMemory), name, options, progress);
     }();
     return fitted(input, name, options, progress, clock);
 }

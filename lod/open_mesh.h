@@ -12,6 +12,7 @@ namespace isowave::lod {
 
 // A mesh file as it is, in LPS when it says SPACE=RAS. format: as MeshFileInfo has it. step, droppedNote: as MeshFile has them
 // (io/mesh/read.h). unit: of the coordinates where it is known, which is that of GLB alone; in the one that is asked for, or mm.
+// maxMemory: as in SolidOptions, for what gzip has compressed.
 struct LoadedMesh {
     TriangleMesh mesh;
     Space space = Space::unspecified;
@@ -20,7 +21,7 @@ struct LoadedMesh {
     std::string droppedNote = {}, unit = {};
 };
 LoadedMesh loadMesh(const std::filesystem::path& path, const Progress& progress,
-                    const std::optional<std::string>& unit = {});
+                    const std::optional<std::string>& unit = {}, const std::optional<double>& maxMemory = {});
 
 // What openMesh() goes by, of a mesh that is repaired and not yet sampled.
 struct MeshPlan {

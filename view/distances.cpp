@@ -75,24 +75,36 @@ SurfaceDistance::SurfaceDistance(const TriangleMesh& reference)
           Tree{TriangleHierarchy(vectorsOf(reference.points), reference.triangles)})) {}
 SurfaceDistance::~SurfaceDistance() = default;
 
-DistanceSummary SurfaceDistance::of(const TriangleMesh& mesh, const Progress& progress) const {
-    DistanceSummary summary;
-    summary.ofVertex.assign(mesh.points.size(), 0);
-    std::vector<float> atCentroid(mesh.triangles.size());
+namespace {
+
+// measure(0), ..., measure(count - 1), in any order.
+template <class Measure>
+void each(std::size_t count, const Progress& progress, const Measure& measure) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+        progress.check();
+        for (std::size_t i = range.begin(); i < range.end(); ++i) measure(i);
+    });
+}
+
+}  // namespace
+
+std::vector<float> SurfaceDistance::ofVertices(const TriangleMesh& mesh, const Progress& progress) const {
+    std::vector<float> distances(mesh.points.size(), 0);
     std::vector<char> used(mesh.points.size(), 0);
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) used[v] = 1;
-    const auto each = [&](std::size_t count, const auto& measure) {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-            progress.check();
-            for (std::size_t i = range.begin(); i < range.end(); ++i) measure(i);
-        });
-    };
     progress("measure", 0);
-    each(mesh.points.size(), [&](std::size_t v) {
-        if (used[v]) summary.ofVertex[v] = static_cast<float>(tree_->at(vectorOf(mesh.points[v])));
+    each(mesh.points.size(), progress, [&](std::size_t v) {
+        if (used[v]) distances[v] = static_cast<float>(tree_->at(vectorOf(mesh.points[v])));
     });
-    each(mesh.triangles.size(), [&](std::size_t t) {
+    return distances;
+}
+
+DistanceSummary SurfaceDistance::of(const TriangleMesh& mesh, const Progress& progress) const {
+    DistanceSummary summary;
+    summary.ofVertex = ofVertices(mesh, progress);
+    std::vector<float> atCentroid(mesh.triangles.size());
+    each(mesh.triangles.size(), progress, [&](std::size_t t) {
         atCentroid[t] = static_cast<float>(tree_->at(centroidOf(mesh, mesh.triangles[t])));
     });
     Samples samples;

@@ -30,6 +30,8 @@ class SurfaceDistance {
     ~SurfaceDistance();
     // The same numbers for any number of threads.
     DistanceSummary of(const TriangleMesh& mesh, const Progress& progress = {}) const;
+    // DistanceSummary::ofVertex alone, in a third of the time.
+    std::vector<float> ofVertices(const TriangleMesh& mesh, const Progress& progress = {}) const;
 
   private:
     struct Tree;

@@ -59,16 +59,17 @@ struct Polyline {
 
 // What a mesh file says besides its polygons.
 struct MeshFileInfo {
-    std::string format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF", "GLB"
-    std::string space;   // the word after SPACE= in a comment, as 3D Slicer writes it: LPS, RAS; or empty
+    std::string
+        format;  // "binary STL", "ASCII STL", "OBJ", "ASCII PLY", "binary PLY", "OFF", "GLB", "VTP", "3MF"
+    std::string space;  // the word after SPACE= in a comment, as 3D Slicer writes it: LPS, RAS; or empty
     std::int64_t polygons = 0;  // as listed, before they are cut into triangles
 };
 
 // Steps of the coordinates' number format that a mesh must be across to be read.
 inline constexpr int kFewestSteps = 1024;
 
-// STL (binary, text), OBJ, PLY (binary of either byte order, text), OFF (text), GLB (in mm, z up). Concave polygons too
-// become triangles without overlaps. Throws InputError: missing, truncated, malformed (with line), no triangles, a coordinate
+// STL (binary, text), OBJ, PLY (binary of either byte order, text), OFF (text), GLB (in mm, z up), VTP, 3MF (in mm); each also
+// compressed by gzip, its format then told by the name without .gz. Concave polygons too become triangles without overlaps. Throws InputError: missing, truncated, malformed (with line), no triangles, a coordinate
 // that is not finite (which point), coordinates beyond 1e15 or so far from the origin that fewer than
 // kFewestSteps representable steps are left across the part. No repair beyond that: points as listed (STL corners merged
 // by exact position). info: optional second result.
@@ -79,14 +80,14 @@ ISOWAVE_EXPORT TriangleMesh readMesh(const std::filesystem::path& path, MeshFile
 // normal of the first; triangles keep their number and order.
 ISOWAVE_EXPORT TriangleMesh mergeEqualPoints(const TriangleMesh& mesh);
 
-// Whether a path has a mesh file's extension: .stl .obj .ply .off .glb, in any case.
+// Whether a path has a mesh file's extension: .stl .obj .ply .off .glb .vtp .3mf, in any case, and .gz behind it.
 ISOWAVE_EXPORT bool isMeshPath(const std::filesystem::path& path);
 
 // ---- writing ----
 
-enum class MeshFormat { stl, ply, obj, off, glb };
+enum class MeshFormat { stl, ply, obj, off, glb, vtp, threeMf };
 
-// By extension, case-insensitive. Throws InputError naming the five formats for another one.
+// By extension, case-insensitive. Throws InputError naming the formats for another one.
 ISOWAVE_EXPORT MeshFormat meshFormatOf(const std::filesystem::path& path);
 ISOWAVE_EXPORT MeshFormat meshFormatFromName(const std::string& name);
 ISOWAVE_EXPORT const char* extensionOf(MeshFormat format);  // with the dot: ".stl"
@@ -101,12 +102,18 @@ enum class Space {
 
 struct MeshWriteOptions {
     Space space = Space::unspecified;  // what to write; points of the mesh itself are LPS
-    double metresPerUnit = 0.001;  // glTF is metres, Y up: points are scaled by this and turned (x, z, -y)
+    // glTF is metres, Y up: points are scaled by this and turned (x, z, -y). 3MF names the unit.
+    double metresPerUnit = 0.001;
+    // One a point, or none: how far it is from the surface of level 0, world units. PLY has the property distance_to_level0, VTP
+    // the array of that name as its active scalars, GLB the attribute _DISTANCE_TO_LEVEL0 and colours in COLOR_0; the others go
+    // without.
+    std::vector<float> distanceToLevel0 = {};
+    double distanceRange = 0;  // of the last colour of GLB, world units; 0: of the largest of these distances
 };
 
 // Written under a temporary name, then renamed: a failure leaves nothing behind. Throws OperationError.
 //
-// Numbers. OBJ and OFF print the shortest decimals that read back exactly. PLY is float32, or float64 where
+// Numbers. OBJ and OFF print the shortest decimals that read back exactly. PLY, VTP and 3MF are float32, or float64 where
 // float32 would move a point by more than 1e-4 of the mean edge or make two points one. STL and GLB have only
 // float32. STL has no indices either: its readers merge corners by position, and two points that have become
 // one would tear the manifold. So points stay apart:
@@ -116,9 +123,9 @@ struct MeshWriteOptions {
 //   format and recommends PLY. STL is also refused where the mesh is fewer than kFewestSteps float32 steps
 //   across: a part 40 mm across 1 km from the origin, which readMesh would refuse.
 //
-// Normals. PLY nx ny nz, OBJ vn, GLB NORMAL; STL has its facets' normals. OFF goes without: many readers
-// refuse the NOFF header. The comment SPACE=LPS or SPACE=RAS stands in STL's 80-byte header, as a comment in
-// PLY, OBJ and OFF, in asset.extras.SPACE of GLB. REQUIRES: normals empty or one a point; indices below
+// Normals. PLY nx ny nz, OBJ vn, GLB NORMAL, VTP's active normals; STL has its facets' normals. OFF goes without: many readers
+// refuse the NOFF header, and 3MF has none. The comment SPACE=LPS or SPACE=RAS stands in STL's 80-byte header, as a comment in
+// PLY, OBJ and OFF, in asset.extras.SPACE of GLB, as a comment in VTP, in the description of 3MF. REQUIRES: normals empty or one a point; indices below
 // points.size().
 ISOWAVE_EXPORT void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, MeshFormat format,
                               const MeshWriteOptions& options = {});

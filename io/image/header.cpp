@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/inflate.h"
 #include "io/image/check.h"
 #include "isowave/error.h"
 
@@ -76,44 +77,28 @@ struct Inflated {
     bool finished = false;
 };
 
-class InflateStream {
-  public:
-    InflateStream() { inflateInit2(&z_, 15 + 32); }  // 32: zlib or gzip, whichever the first bytes say
-    ~InflateStream() { inflateEnd(&z_); }
-    InflateStream(const InflateStream&) = delete;
-    InflateStream& operator=(const InflateStream&) = delete;
-
-    Inflated measure(std::ifstream& file) {
-        std::vector<char> in(1 << 16), out(1 << 18);
-        Inflated result;
-        while (file.read(in.data(), static_cast<std::streamsize>(in.size())) || file.gcount() > 0) {
-            z_.next_in = reinterpret_cast<Bytef*>(in.data());
-            z_.avail_in = static_cast<uInt>(file.gcount());
-            while (z_.avail_in > 0) {
-                if (result.finished && inflateReset(&z_) != Z_OK) return result;
-                z_.next_out = reinterpret_cast<Bytef*>(out.data());
-                z_.avail_out = static_cast<uInt>(out.size());
-                const int status = inflate(&z_, Z_NO_FLUSH);
-                result.bytes += static_cast<std::int64_t>(out.size() - z_.avail_out);
-                if (status == Z_STREAM_END) {
-                    result.finished = true;
-                } else if (result.finished) {
-                    return result;  // bytes after the end that are no further stream: padding
-                } else if (status != Z_OK) {
-                    return result;
-                }
-                if (status == Z_OK && z_.avail_out > 0 && z_.avail_in == 0) break;
-            }
+Inflated measured(std::ifstream& file) {
+    std::vector<char> in(1 << 16), out(1 << 18);
+    InflateStream stream;
+    Inflated result;
+    bool ended = false;
+    while (file.read(in.data(), static_cast<std::streamsize>(in.size())) || file.gcount() > 0) {
+        std::string_view left(in.data(), static_cast<std::size_t>(file.gcount()));
+        for (bool full = false; !left.empty() || full;) {
+            if (ended) stream.restart();
+            std::span<char> room(out);
+            const InflateStream::State state = stream.inflate(left, room);
+            // Bytes behind the end that are no further stream are padding.
+            if (state == InflateStream::State::damaged) return result;
+            const std::size_t came = out.size() - room.size();
+            result.bytes += static_cast<std::int64_t>(came);
+            full = room.empty();
+            ended = state == InflateStream::State::ended;
+            if (ended || came > 0) result.finished = ended;
         }
-        return result;
     }
-
-  private:
-    z_stream z_{};
-};
-
-// Deflate's longest match, 258 bytes, takes two bits at least: 1032 to 1 (zlib's technical details).
-constexpr std::int64_t kBestRatio = 1032;
+    return result;
+}
 
 // The last 4 bytes of a gzip stream are its length modulo 2^32. If they say what is needed, the file is whole
 // but for a chance of 2^-32, and a large file need not be inflated twice.
@@ -147,7 +132,7 @@ void checkPlain(const fs::path& path, std::int64_t start, std::int64_t needed, c
 void checkDeflated(const fs::path& path, std::int64_t start, std::int64_t needed,
                    const std::string& promise) {
     const std::int64_t packed = static_cast<std::int64_t>(fs::file_size(path)) - start;
-    if (needed / kBestRatio > packed)
+    if (needed / static_cast<std::int64_t>(kBestDeflateRatio) > packed)
         throw InputError(path.string(),
                          fmt::format("{} ({}) but the file holds {} compressed, too few for that; it is "
                                      "truncated or its header is wrong",
@@ -156,7 +141,7 @@ void checkDeflated(const fs::path& path, std::int64_t start, std::int64_t needed
     if (gzipEndsAt(path, needed)) return;
     std::ifstream file(path, std::ios::binary);
     file.seekg(start);
-    const Inflated inflated = InflateStream().measure(file);
+    const Inflated inflated = measured(file);
     if (inflated.bytes < needed || !inflated.finished)
         throwTruncated(path, promise, needed, std::min(inflated.bytes, needed));
 }

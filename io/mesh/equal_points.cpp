@@ -1,5 +1,6 @@
 #include "io/mesh/equal_points.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -27,12 +28,20 @@ std::uint64_t hashOf(const Point& p) {
 // nearly all comparisons, and the point's number; at most half of the slots are used.
 class PointTable {
   public:
-    explicit PointTable(std::span<const Point> points) : points_(points), slots_(1024, kFree) {}
+    // A closed mesh's corners have each point six times: room for twice as many points, before it grows.
+    explicit PointTable(std::span<const Point> points)
+        : points_(points), slots_(std::bit_ceil(std::max<std::size_t>(1024, points.size() / 3)), kFree) {}
 
-    // The point that was put in before with the coordinates of point i, or i, which is in now.
-    std::uint32_t put(std::uint32_t i) {
-        if (2 * used_ >= slots_.size()) grow();
+    // What put() wants to know of point i. The slot, which may be anywhere, is on its way from memory then.
+    std::uint64_t announce(std::uint32_t i) const {
         const std::uint64_t hash = hashOf(points_[i]);
+        __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
+        return hash;
+    }
+
+    // The point that was put in before with the coordinates of point i, or i, which is in now. REQUIRES: hash is point i's.
+    std::uint32_t put(std::uint32_t i, std::uint64_t hash) {
+        if (2 * used_ >= slots_.size()) grow();
         std::size_t at = hash & (slots_.size() - 1);
         for (; slots_[at] != kFree; at = (at + 1) & (slots_.size() - 1)) {
             const auto other = static_cast<std::uint32_t>(slots_[at]);
@@ -68,8 +77,13 @@ DistinctPoints distinctPoints(std::span<const Point> points) {
     PointTable table(points);
     DistinctPoints distinct;
     distinct.which.resize(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const std::uint32_t first = table.put(i);
+    constexpr std::uint32_t kAhead = 16;  // 8, 16 and 32 are alike, 1 takes a third longer
+    const auto count = static_cast<std::uint32_t>(points.size());
+    std::array<std::uint64_t, kAhead> hashes{};
+    for (std::uint32_t i = 0; i < std::min(count, kAhead); ++i) hashes[i] = table.announce(i);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t first = table.put(i, hashes[i % kAhead]);
+        if (count - i > kAhead) hashes[i % kAhead] = table.announce(i + kAhead);
         if (first == i) {
             distinct.which[i] = static_cast<std::uint32_t>(distinct.firsts.size());
             distinct.firsts.push_back(i);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/point_box.h"
+#include "io/mesh/distance/distance_colours.h"
 #include "io/mesh/float32.h"
 #include "isowave/error.h"
 
@@ -30,9 +31,28 @@ struct Accessors {
     }
 };
 
-// Positions, normals, indices, in this order.
+// Of a vertex, as it is stored: red, green, blue and alpha in linear light, 65,535 for 1.
+using StoredColour = std::array<std::uint16_t, 4>;
+
+// The distance of the last colour.
+double rangeOf(const MeshView& mesh) {
+    if (mesh.distanceRange > 0) return mesh.distanceRange;
+    return *std::max_element(mesh.distances.begin(), mesh.distances.end());
+}
+
+StoredColour colourOf(float distance, double range) {
+    StoredColour stored;
+    stored[3] = 65'535;
+    const std::array<double, 3> colour = linearDistanceColour(range > 0 ? distance / range : 0);
+    for (std::size_t k = 0; k < 3; ++k)
+        stored[k] = static_cast<std::uint16_t>(std::lround(65'535 * colour[k]));
+    return stored;
+}
+
+// Positions, normals, distances, colours, indices, in this order.
 Accessors accessorsOf(const MeshView& mesh, const std::vector<FloatPoint>& points, json& primitive) {
-    constexpr int kFloat = 5126, kUint32 = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+    constexpr int kFloat = 5126, kUint32 = 5125, kUint16 = 5123, kArrayBuffer = 34962,
+                  kElementArrayBuffer = 34963;
     FloatPoint low = points[0], high = points[0];
     for (const FloatPoint& p : points)
         for (int a = 0; a < 3; ++a) {
@@ -46,6 +66,13 @@ Accessors accessorsOf(const MeshView& mesh, const std::vector<FloatPoint>& point
     all.accessors[0]["max"] = high;
     if (!mesh.normals.empty())
         attributes["NORMAL"] = all.add(mesh.normals.size(), kFloat, "VEC3", sizeof(FloatPoint), kArrayBuffer);
+    if (!mesh.distances.empty()) {
+        attributes["_DISTANCE_TO_LEVEL0"] =
+            all.add(mesh.distances.size(), kFloat, "SCALAR", sizeof(float), kArrayBuffer);
+        attributes["COLOR_0"] =
+            all.add(mesh.distances.size(), kUint16, "VEC4", sizeof(StoredColour), kArrayBuffer);
+        all.accessors.back()["normalized"] = true;
+    }
     primitive["indices"] =
         all.add(3 * mesh.triangles.size(), kUint32, "SCALAR", sizeof(std::uint32_t), kElementArrayBuffer);
     return all;
@@ -78,6 +105,7 @@ json describe(const MeshView& mesh, const std::vector<FloatPoint>& points, const
         const Accessors all = accessorsOf(mesh, points, primitive);
         node["mesh"] = 0;
         gltf["meshes"] = json::array({json{{"name", title}, {"primitives", json::array({primitive})}}});
+        if (!mesh.distances.empty()) gltf["meshes"][0]["extras"]["distance_of_last_colour"] = rangeOf(mesh);
         gltf["accessors"] = all.accessors;
         gltf["bufferViews"] = all.views;
         gltf["buffers"] = json::array({json{{"byteLength", all.bytes}}});
@@ -100,6 +128,7 @@ void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const s
     const bool empty = mesh.triangles.empty();
     const std::uint64_t binary = empty ? 0
                                        : sizeof(FloatPoint) * (points.size() + mesh.normals.size()) +
+                                             (sizeof(float) + sizeof(StoredColour)) * mesh.distances.size() +
                                              sizeof(Triangle) * mesh.triangles.size();
     const std::uint64_t total = 12 + 8 + text.size() + (empty ? 0 : 8 + binary);
     if (total > 0xffffffffu)
@@ -114,6 +143,11 @@ void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const s
     sink.binary(u32(binary), kBin);
     for (const FloatPoint& p : points) sink.binary(p);
     for (const FloatPoint& n : mesh.normals) sink.binary(n);
+    for (const float d : mesh.distances) sink.binary(d);
+    if (!mesh.distances.empty()) {
+        const double range = rangeOf(mesh);
+        for (const float d : mesh.distances) sink.binary(colourOf(d, range));
+    }
     for (const Triangle& t : mesh.triangles) sink.binary(t);
 }
 

@@ -327,6 +327,7 @@ std::string headerFor(const MeshView& mesh, bool wide, bool longFaces) {
     for (const char axis : {'x', 'y', 'z'})
         header += fmt::format("property {} {}\n", wide ? "double" : "float", axis);
     if (!mesh.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
+    if (!mesh.distances.empty()) header += "property float distance_to_level0\n";
     // int, as all readers know it, unless indices need the 32nd bit.
     const bool isSigned = !mesh.isPolygons() && mesh.points.size() <= 0x7fffffffu;
     return header + fmt::format("element face {}\nproperty list {} {} vertex_indices\nend_header\n",
@@ -363,6 +364,7 @@ void writePly(Sink& sink, const MeshView& mesh) {
         else
             sink.binary(toFloat(mesh.points[i]));
         if (!mesh.normals.empty()) sink.binary(mesh.normals[i]);
+        if (!mesh.distances.empty()) sink.binary(mesh.distances[i]);
     }
     for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
         const auto face = mesh.face(f);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/cad_model.h"
+#include "base/inflate.h"
 #include "base/polygon_triangles.h"
 #include "base/read_file.h"
 #include "io/mesh/glb_reader.h"
@@ -113,9 +114,14 @@ PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::stri
             return readOff(bytes, name);
         case MeshFormat::glb:
             return readGlb(bytes, name);
-        default:
-            return readPly(bytes, name);
+        case MeshFormat::vtp:
+            return readVtp(bytes, name);
+        case MeshFormat::threeMf:
+            return readThreeMf(bytes, name);
+        case MeshFormat::ply:
+            break;
     }
+    return readPly(bytes, name);
 }
 
 std::string adviceFor(const std::filesystem::path& path) {
@@ -163,17 +169,17 @@ std::string allRead(std::string_view ReadFormat::*what, const char* between) {
 std::string meshInputNames() { return allRead(&ReadFormat::name, ", "); }
 
 bool isMeshPath(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
+    const std::string extension = lowerCase(withoutGz(path).extension().string());
     return std::any_of(std::begin(kRead), std::end(kRead),
                        [&](const ReadFormat& format) { return format.extension == extension; });
 }
 
-MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress) {
-    const std::string name = path.string(), extension = lowerCase(path.extension().string());
-    if (extension == ".gz") throw InputError(name, "is compressed by gzip; gunzip it first");
+MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress, double mostBytes) {
+    const std::filesystem::path plain = withoutGz(path);
+    const std::string name = path.string(), extension = lowerCase(plain.extension().string());
     if (const auto text = cadModelText(path)) throw InputError(name, *text);
     if (!isMeshPath(path)) {
-        const std::string advice = adviceFor(path);
+        const std::string advice = adviceFor(plain);
         throw InputError(
             name, advice.empty()
                       ? fmt::format("'{}' is no mesh format that is read: .stl .obj .ply .off .glb .vtp .3mf",
@@ -181,11 +187,9 @@ MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progres
                       : advice);
     }
     progress("reading", 0.0);
-    const std::string bytes = readFile(path, "a mesh file");
+    const std::string bytes = readInflatedFile(path, "a mesh file", mostBytes);
     progress("reading", 0.2);
-    PolygonSoup soup = extension == ".vtp"   ? readVtp(bytes, name)
-                       : extension == ".3mf" ? readThreeMf(bytes, name)
-                                             : parseMesh(bytes, meshFormatOf(path), name);
+    PolygonSoup soup = parseMesh(bytes, meshFormatOf(plain), name);
     progress("reading", 0.8);
     checkFaces(name, soup);
     checkPoints(name, soup.points, soup.float32);

@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "base/peak_memory.h"
 #include "io/mesh/soup.h"
 #include "isowave/mesh.h"
 
 namespace isowave {
 
-// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h); xml/vtp.h and xml/three_mf.h read what has
-// no MeshFormat, which is what is written.
+// What a file's bytes say. name: begins every complaint. Throws InputError (see stl.h, obj.h, off.h, ply.h, glb_reader.h, xml/vtp.h, xml/three_mf.h).
 PolygonSoup parseMesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
 // What readMesh() reads, and what only a repair and a report ask for.
@@ -23,7 +23,10 @@ struct MeshFile {
     double step = 0;
     std::string droppedNote;  // "colours and materials are not kept"; empty where all is
 };
-MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress = {});
+// Files that gzip has compressed, by their first two bytes, are inflated, to `mostBytes` at most; their format goes by the name
+// without .gz.
+MeshFile readMeshFile(const std::filesystem::path& path, const Progress& progress = {},
+                      double mostBytes = usualMemoryLimit());
 
 // "STL, OBJ, ...": what is read.
 std::string meshInputNames();

@@ -39,6 +39,12 @@ class Sink {
         const auto end = std::to_chars(digits + 1, digits + sizeof digits, value).ptr;
         text({digits, end});
     }
+    template <class Number>
+    void number(std::string_view before, Number value) {
+        char digits[32];
+        text(before);
+        text({digits, std::to_chars(digits, digits + sizeof digits, value).ptr});
+    }
     // The three such decimals of a point, with blanks between; plain: without exponents from 1e-4 up to 1e16.
     void point(const Point& p, bool plain);
     // Throws OperationError where the disk is full.

@@ -21,6 +21,9 @@ struct MeshView {
     std::span<const std::uint32_t> corners, faceBegin;
     std::vector<std::string> tags;  // as MeshTag::text
     Space space = Space::unspecified;
+    std::span<const float> distances;  // to level 0, world units, one a point, or none
+    double distanceRange = 0;          // of the last colour
+    double metresPerUnit = 0.001;
 
     bool isPolygons() const { return !faceBegin.empty(); }
     std::size_t faceCount() const { return isPolygons() ? faceBegin.size() - 1 : triangles.size(); }

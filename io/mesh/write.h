@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "io/mesh/sink.h"
 #include "io/mesh/view.h"
@@ -9,12 +10,19 @@
 
 namespace isowave {
 
+// The formats that are written, each with its extension, which is its name behind a dot.
+struct MeshFormatName {
+    MeshFormat format;
+    const char* extension;
+};
+std::span<const MeshFormatName> meshFormatNames();
+
 // Points and normals of `mesh` as a file of this format shall have them: turned to RAS where the options ask for it; for GLB Y up,
 // in metres.
 void placeFor(MeshFormat format, const MeshWriteOptions& options, TriangleMesh& mesh);
 
 // The points as they are: for GLB they must already be what glTF asks for. path: for complaints, and GLB's name of the mesh.
-// REQUIRES: triangles, for STL and GLB.
+// REQUIRES: triangles, for STL, GLB and 3MF.
 void printMesh(Sink& sink, const MeshView& mesh, MeshFormat format, const std::filesystem::path& path);
 
 }  // namespace isowave

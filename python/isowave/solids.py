@@ -274,12 +274,13 @@ class Level(Adapters):
         """
         return self._ladder._field(self.step)
 
-    def save(self, path: PathLike, *, space: Optional[str] = None) -> None:
-        """Writes the mesh as .stl, .ply, .obj, .off or .glb; the file appears whole or not at all.
+    def save(self, path: PathLike, *, space: Optional[str] = None, colour: Optional[str] = None) -> None:
+        """Writes the mesh as .stl, .ply, .obj, .off, .glb, .vtp or .3mf; the file appears whole or not at all.
 
         space: "lps" or "ras", the axes of the written coordinates, for images.
+        colour: "distance", in .ply, .glb and .vtp: each vertex's distance to level 0 of the ladder, as distance_to_level0.
         """
-        self._ladder._native.write(self._index, os.fspath(path), (space or "").lower())
+        self._ladder._native.write(self._index, os.fspath(path), (space or "").lower(), (colour or "").lower())
 
     def __repr__(self) -> str:
         name = f"level {self.level}" if self.level is not None else f"step {self.step}"
@@ -340,6 +341,7 @@ class Ladder(Sequence[Level]):
         *,
         format: str = "ply",
         space: Optional[str] = None,
+        colour: Optional[str] = None,
         threads: Optional[int] = None,
         progress: Optional[ProgressLike] = None,
     ) -> list[str]:
@@ -347,13 +349,15 @@ class Ladder(Sequence[Level]):
 
         ``save("out/cranium")`` makes out/cranium/cranium_L0.ply, ... All files appear at once, or none does.
 
-        format: stl, ply, obj, off or glb.
+        format: stl, ply, obj, off, glb, vtp or 3mf.
         space: "lps" or "ras", the axes of the written coordinates, for images and meshes that say SPACE=.
+        colour: "distance", with ply, glb and vtp: each vertex's distance to level 0, as distance_to_level0.
 
-        Raises UsageError for a file that is the ladder's own input, OperationError where writing fails.
+        Raises UsageError for a file that is the ladder's own input, and for a colour where the format has no place for it or the ladder no
+        level 0; OperationError where writing fails.
         """
         watch = Watch(progress, threads)
-        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), self._inputs, watch)
+        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), (colour or "").lower(), self._inputs, watch)
         return [os.fspath(path) for path in paths]
 
     def _field(self, step: int) -> Field:

@@ -11,6 +11,7 @@
 #include "python/native/watch.h"
 #include "tools/output.h"
 #include "tools/report/ladder_report.h"
+#include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
 
@@ -61,18 +62,37 @@ void check(const GivenOptions& given) {
 struct WriteChoice {
     MeshFormat format;
     MeshWriteOptions options;
+    tools::ColourChoice colour;
+
+    // Of every mesh to level 0, which must be there.
+    tools::MeshColours coloursOf(const MadeLadder& made) const {
+        colour.requireLevel0(made.choices.levels, made.choices.budgets);
+        tools::MeshColours colours(colour);
+        if (made.levelCount() > 0) colours.setLevel0(made.mesh(0));
+        return colours;
+    }
+    void write(const std::filesystem::path& path, const MadeLadder& made, std::size_t i,
+               const tools::MeshColours& colours, const Progress& progress) const {
+        const bool isLevel0 = i < made.levelCount() && made.ladder.levels[i].report.step == 0;
+        writeMesh(path, made.mesh(i), format, colours.with(options, made.mesh(i), isLevel0, progress));
+    }
 };
 
-WriteChoice choiceOf(const MadeLadder& made, const std::string& format, const std::string& space) {
+WriteChoice choiceOf(const MadeLadder& made, const std::string& format, const std::string& space,
+                     const std::string& colour) {
     std::optional<MeshFormat> chosen;
     tools::SpaceChoice spaceChoice;
+    tools::ColourChoice colourChoice;
     tools::OptionList options;
     tools::declareFormat(options, chosen);
     spaceChoice.declare(options);
+    colourChoice.declare(options);
     GivenOptions given{{"--format", format}};
     if (!space.empty()) given.push_back({"--space", space});
+    if (!colour.empty()) given.push_back({"--colour", colour});
     take(given, options);
-    return {*chosen, {spaceChoice.of(made.space), made.metresPerUnit}};
+    colourChoice.requireFormat(*chosen);
+    return {*chosen, {spaceChoice.of(made.space), made.metresPerUnit}, colourChoice};
 }
 
 tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names) {
@@ -87,9 +107,10 @@ tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names
 // What `isowave lod -o FOLDER` writes. inputs: what no file may take the place of.
 std::vector<std::filesystem::path> save(const MadeLadder& made, const std::filesystem::path& folder,
                                         const std::string& format, const std::string& space,
+                                        const std::string& colour,
                                         const std::vector<std::filesystem::path>& inputs,
                                         const py::object& watch) {
-    const WriteChoice choice = choiceOf(made, format, space);
+    const WriteChoice choice = choiceOf(made, format, space, colour);
     return watched(watch, [&](const Progress& progress) {
         tools::OutputFolder out(folder, tools::Inputs(inputs));
         const tools::MeshNames names(out.name(), choice.format, made.choices.levels, made.choices.budgets);
@@ -97,10 +118,11 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
         std::vector<std::string> all = files.levels;
         all.insert(all.end(), files.budgets.begin(), files.budgets.end());
         std::vector<std::filesystem::path> places;
+        const tools::MeshColours colours = choice.coloursOf(made);
         try {
             for (std::size_t i = 0; i < all.size(); ++i) {
                 progress("write", static_cast<double>(i) / static_cast<double>(all.size()));
-                writeMesh(out.place(all[i]), made.mesh(i), choice.format, choice.options);
+                choice.write(out.place(all[i]), made, i, colours, progress);
                 places.push_back(out.folder() / all[i]);
             }
             tools::writeFiles(out, {{"report.json", tools::jsonOf(made.ladder, files)}});
@@ -114,13 +136,12 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
     });
 }
 
-void write(const MadeLadder& made, std::size_t i, const std::filesystem::path& path,
-           const std::string& space) {
-    const MeshFormat format = meshFormatOf(path);
-    const WriteChoice choice = choiceOf(made, extensionOf(format) + 1, space);
+void write(const MadeLadder& made, std::size_t i, const std::filesystem::path& path, const std::string& space,
+           const std::string& colour) {
+    const WriteChoice choice = choiceOf(made, extensionOf(meshFormatOf(path)) + 1, space, colour);
     const py::gil_scoped_release release;
     tools::OutputFile out(path);
-    writeMesh(path, made.mesh(i), format, choice.options);
+    choice.write(path, made, i, choice.coloursOf(made), {});
     out.commit();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/inflate.h"
 #include "base/number_text.h"
 #include "base/read_file.h"
 #include "io/mesh/lines.h"
@@ -102,8 +103,8 @@ MeshFormat polygonFormatOf(const std::filesystem::path& path) {
 }
 
 PolygonMesh readPolygonMesh(const std::filesystem::path& path, std::vector<std::string>* remarks) {
-    const MeshFormat format = polygonFormatOf(path);
-    return parsePolygonMesh(readFile(path, "a mesh file"), format, path.string(), remarks);
+    const MeshFormat format = polygonFormatOf(withoutGz(path));
+    return parsePolygonMesh(readInflatedFile(path, "a mesh file"), format, path.string(), remarks);
 }
 
 PolygonMesh parsePolygonMesh(std::string_view bytes, MeshFormat format, const std::string& name,

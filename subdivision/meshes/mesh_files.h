@@ -22,6 +22,7 @@ namespace isowave::subdivision {
 MeshFormat polygonFormatOf(const std::filesystem::path& path);
 
 // Reads positions, faces and creases; texture coordinates, normals, colours, groups and materials are passed over.
+// Files that gzip has compressed are inflated; their format goes by the name without .gz.
 // PLY: ASCII or binary of either byte order. OBJ: negative indices count from the end. Vertices in no face are left out, and
 // those behind them move up. Nothing is merged, turned or checked beyond the file itself: requireManifold() does that.
 // remarks: gets a line for what is not kept: colours and the like; vertices in no face.

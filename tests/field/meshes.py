@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Meshes as VTK and Python's zipfile write them: what isowave says of them.
+"""Meshes as VTK and Python's zipfile write them: what isowave says of them; and what isowave writes: what they say of it.
 
     tests/field/meshes.py PROGRAM
 
 A VTP in every way that VTK knows, of polygons, quads and strips, and a 3MF in every unit, plain and deflated. `isowave info` must
-give the bounds, `isowave check` the volume, triangles and topology that the shape has. What VTK is needed for is left out, with
-a line that says so, where Python has no vtk.
+give the bounds, `isowave check` the volume, triangles and topology that the shape has. Levels that isowave writes as VTP are for VTK
+the points and triangles that they are as PLY, and their distances those that VTK measures to level 0; as 3MF they are well-formed
+XML with the volume in the unit that is asked for, and for prusa-slicer a manifold of that volume. What VTK or prusa-slicer is needed
+for is left out, with a line that says so, where it is not there.
 """
-import itertools, json, os, subprocess, sys, tempfile, zipfile
+import itertools, json, os, re, shutil, subprocess, sys, tempfile, xml.etree.ElementTree, zipfile
 
 CORNERS = [(x, y, z) for z in (0, 3) for y in (0, 2) for x in (0, 1)]
 # The box's sides, counter-clockwise from outside.
@@ -84,7 +86,85 @@ def vtk_files(program, folder):
         check(program, path)
 
 
+GEAR = os.path.join(os.path.dirname(__file__), '../data/meshes/gearwheel.bin.stl')
+
+
+def ladder(program, folder, name, *options):
+    out = os.path.join(folder, name)
+    subprocess.run([program, 'lod', GEAR, '--voxels', '32', '--levels', '0..2', '-o', out, '--quiet', *options], check=True, stdout=subprocess.DEVNULL)
+    with open(os.path.join(out, 'report.json')) as file:
+        return [os.path.join(out, level['file']) for level in json.load(file)['levels']]
+
+
+def vtk_of(reader, path):
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def written_vtp(program, folder):
+    try:
+        import vtk
+        from vtk.util.numpy_support import vtk_to_numpy
+    except ImportError:
+        print('left out: .vtp written, for Python has no vtk')
+        return
+    plain = ladder(program, folder, 'plain', '--format', 'ply')
+    coloured = ladder(program, folder, 'coloured', '--format', 'vtp', '--colour', 'distance')
+    level0 = vtk_of(vtk.vtkXMLPolyDataReader(), coloured[0])
+    locator = vtk.vtkStaticCellLocator()
+    locator.SetDataSet(level0)
+    locator.BuildLocator()
+    cell, closest = vtk.vtkGenericCell(), [0.0] * 3
+    for ply, vtp in zip(plain, coloured):
+        expected, mesh = vtk_of(vtk.vtkPLYReader(), ply), vtk_of(vtk.vtkXMLPolyDataReader(), vtp)
+        points, triangles = (vtk_to_numpy(mesh.GetPoints().GetData()), vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()))
+        assert (points == vtk_to_numpy(expected.GetPoints().GetData())).all(), vtp
+        assert (triangles == vtk_to_numpy(expected.GetPolys().GetConnectivityArray())).all() and len(triangles) > 3, vtp
+        assert (vtk_to_numpy(mesh.GetPolys().GetOffsetsArray())[1:] % 3 == 0).all(), vtp
+        assert mesh.GetPointData().GetScalars().GetName() == 'distance_to_level0', vtp
+        assert mesh.GetPointData().GetNormals().GetNumberOfTuples() == len(points), vtp
+        distances = vtk_to_numpy(mesh.GetPointData().GetScalars())
+        assert (vtp == coloured[0]) == (distances.max() == 0), vtp
+        for point, distance in zip(points, distances):
+            squared = vtk.reference(0.0)
+            locator.FindClosestPoint([float(x) for x in point], closest, cell, vtk.reference(0), vtk.reference(0), squared)
+            # float32 coordinates about 20: 2e-6 apart.
+            assert abs(float(squared) ** 0.5 - distance) < 1e-5, (vtp, point, distance, float(squared) ** 0.5)
+        print('same', os.path.basename(vtp), len(points), 'points, the farthest', distances.max())
+
+
+def written_3mf(program, folder):
+    name = '{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}'
+    slicer = shutil.which('prusa-slicer')
+    for unit, word in ('mm', 'millimeter'), ('in', 'inch'):
+        for path in ladder(program, folder, unit, '--format', '3mf', '--unit', unit):
+            with zipfile.ZipFile(path) as archive:
+                assert archive.testzip() is None, path
+                model = xml.etree.ElementTree.fromstring(archive.read('3D/3dmodel.model'))
+            assert model.get('unit') == word, path
+            objects = model.findall(f'{name}resources/{name}object')
+            assert len(objects) == len(model.findall(f'{name}build/{name}item')) >= 1, path
+            volume = told(program, 'check', path)['volume']
+            six = 0
+            for mesh in model.iter(name + 'mesh'):
+                at = [[float(v.get(a)) for a in 'xyz'] for v in mesh.iter(name + 'vertex')]
+                for t in mesh.iter(name + 'triangle'):
+                    (a, b, c), (d, e, f), (g, h, i) = (at[int(t.get(v))] for v in ('v1', 'v2', 'v3'))
+                    six += a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
+            scale = 25.4 ** 3 if unit == 'in' else 1
+            assert abs(six / 6 * scale / volume - 1) < 1e-6, (path, six, volume)
+            if slicer:
+                info = subprocess.run([slicer, '--info', path], capture_output=True, text=True, check=True).stdout
+                assert 'manifold = yes' in info, (path, info)
+                volumes = [float(v) for v in re.findall(r'volume = ([0-9.]+)', info)]
+                assert abs(sum(volumes) / volume - 1) < 1e-3, (path, info)
+            print('same', os.path.basename(path), unit)
+    if not slicer:
+        print('left out: what prusa-slicer says of a .3mf, for it is not there')
+
+
 if __name__ == '__main__':
     with tempfile.TemporaryDirectory() as scratch:
-        for files in (three_mf_files, vtk_files):
+        for files in (three_mf_files, vtk_files, written_vtp, written_3mf):
             files(sys.argv[1], scratch)

@@ -238,6 +238,11 @@ std::string gzipped(const TempFolder& folder, const std::string& text) {
     return contentOf(file);
 }
 
+TEST_F(Sweep, OfCompressedMeshes) {
+    all("a.stl.gz", gzipped(folder, written(folder, MeshFormat::stl)), readAndRepair);
+    all("a.ply.gz", gzipped(folder, written(folder, MeshFormat::ply)), readPolygonsOf);
+}
+
 // gzip's header has a time and a system that nobody checks; every bit of its data has a checksum.
 TEST_F(Sweep, OfNifti) {
     all("a.nii", smallNifti().file(), imageReader());

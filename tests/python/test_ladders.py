@@ -60,6 +60,22 @@ def test_save_refuses_what_the_command_refuses(gear, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
 
 
+def test_distances_to_level_0_are_saved_as_the_command_saves_them(gear, tmp_path):
+    options = "--voxels", 64, "--levels", "0..2", "--colour", "distance", "--format"
+    for format in "ply", "vtp", "glb":
+        assert command("lod", GEAR, *options, format, "-o", tmp_path / "a" / format).returncode == 0
+        for path in gear.save(tmp_path / "b" / format, format=format, colour="distance")[:-1]:
+            assert open(path, "rb").read() == (tmp_path / "a" / format / path.rsplit("/", 1)[1]).read_bytes()
+    gear[2].save(tmp_path / "one.ply", colour="distance")
+    assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "b/ply/ply_L2.ply").read_bytes()
+    assert b"property float distance_to_level0" in (tmp_path / "one.ply").read_bytes()
+    with pytest.raises(isowave.UsageError, match="--colour distance needs a format with numbers at vertices, which stl"):
+        gear.save(tmp_path / "out", format="stl", colour="distance")
+    with pytest.raises(isowave.UsageError, match="let the levels begin with 0"):
+        isowave.lod(GEAR, voxels=32, levels=(1, 2)).save(tmp_path / "out", colour="distance")
+    assert not (tmp_path / "out").exists()
+
+
 def test_save_does_not_replace_its_input(tmp_path):
     source = tmp_path / "part_L0.stl"
     source.write_bytes(GEAR.read_bytes())
@@ -117,7 +133,7 @@ def test_budgets_come_after_levels(tmp_path):
 
 
 def test_one_level_is_saved_in_the_format_of_its_name(gear, tmp_path):
-    for extension in ("stl", "ply", "obj", "off", "glb"):
+    for extension in ("stl", "ply", "obj", "off", "glb", "vtp", "3mf"):
         gear[2].save(tmp_path / f"new/part.{extension}")
         assert isowave.check(tmp_path / f"new/part.{extension}")
     with pytest.raises(isowave.InputError):
@@ -250,7 +266,7 @@ def test_every_option_of_the_command_is_an_argument():
     shown = command("lod", "--help").stdout
     names = {name.replace("-", "_") for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
     assert len(names) > 30 and names - parameters == {
-        "output", "format", "json", "view", "glb_lods", "quiet", "verbose", "dry_run", "list",
+        "output", "format", "colour", "json", "view", "glb_lods", "quiet", "verbose", "dry_run", "list",
     }  # fmt: skip
     of_curves = {name[2:].replace("-", "_") for name in _native.curve_option_names()}
     assert of_curves <= set(inspect.signature(plane.curves).parameters)

@@ -75,13 +75,13 @@ const std::vector<BadInput>& rows() {
              return lod(f, "notes.txt");
          },
          {"notes.txt", "--size"}},
-        {"CompressedMesh",
+        {"DamagedGzipAroundAMesh",
          3,
          [](const Folder& f) {
              std::ofstream(f / "a.stl.gz") << "\x1f\x8b";
              return lod(f, "a.stl.gz");
          },
-         {"a.stl.gz", "gunzip"}},
+         {"a.stl.gz", "its gzip stream breaks off"}},
         {"NoName",
          2,
          [](const Folder& f) {

@@ -28,6 +28,7 @@
 #include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/dry_run_text.h"
+#include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/parts.h"
 #include "tools/solids/solid_options.h"
@@ -44,6 +45,7 @@ struct MeshWriter {
     const MeshNames& names;
     MeshFormat format;
     MeshWriteOptions options;
+    MeshColours colours;
     OutputFolder& out;
     std::unique_ptr<view::Page> page;  // of --view
     std::optional<GlbLods> lods;       // of --glb-lods
@@ -53,8 +55,9 @@ struct MeshWriter {
     bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
     template <class Report>
-    void write(const std::string& name, const Report& report, const TriangleMesh& mesh) {
-        writeMesh(out.place(name), mesh, format, options);
+    void write(const std::string& name, const Report& report, const TriangleMesh& mesh,
+               bool isLevel0 = false) {
+        writeMesh(out.place(name), mesh, format, colours.with(options, mesh, isLevel0, progress));
         if (!page) return;
         view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
         facts.file = name;
@@ -65,7 +68,8 @@ struct MeshWriter {
             files.levels.push_back(names.ofStep(report.step));
             fromLevel0 = fromLevel0 || report.step == 0;
             if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
-            write(files.levels.back(), report, mesh);
+            if (report.step == 0) colours.setLevel0(mesh);
+            write(files.levels.back(), report, mesh, report.step == 0);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
@@ -210,6 +214,7 @@ class Lod : public Command {
     bool dryRun_ = false;
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
+    ColourChoice colour_;
     bool view_ = false;
     std::optional<bool> quantizedLods_;  // --glb-lods
 };
@@ -248,6 +253,7 @@ Lod::Lod()
     declareLevels(options_, levels_);
     declareFormat(options_, format_);
     space_.declare(options_);
+    colour_.declare(options_);
     options_.value("--glb-lods", "quantized|float", "",
                    "also one GLB with all levels (MSFT_lod), name_lods.glb: positions of 16 bits "
                    "(KHR_mesh_quantization), or float32",
@@ -283,6 +289,8 @@ std::unique_ptr<view::Page> Lod::pageOf(const Solid& solid, const std::string& n
 
 void Lod::check() {
     if (view_) view::requirePages();
+    colour_.requireFormat(format_.value_or(MeshFormat::ply));
+    colour_.requireLevel0(levels_, budgets_);
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     if (budgets_.any() && !levels_.fine.empty())
@@ -306,9 +314,11 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
                const Progress& progress) const {
     Solid solid = open(input, solid_, progress);
     const std::string unit = unitShown(solid);
+    const MeshWriteOptions options{space_.of(solid), metresPerUnitOf(solid)};
     MeshWriter writer{.names = names,
                       .format = format_.value_or(MeshFormat::ply),
-                      .options = {space_.of(solid), metresPerUnitOf(solid)},
+                      .options = options,
+                      .colours = MeshColours(colour_),
                       .out = out,
                       .page = pageOf(solid, out.name()),
                       .lods = lodsOf(solid),

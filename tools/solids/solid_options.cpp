@@ -1,6 +1,7 @@
 #include "tools/solids/solid_options.h"
 
 #include "io/mesh/units.h"
+#include "io/mesh/write.h"
 #include "lod/source.h"
 #include "tools/option_values.h"
 
@@ -259,15 +260,28 @@ int StepChoice::wanted() const {
     return level ? kStepsPerLevel * *level : step.value_or(0);
 }
 
+namespace {
+
+// "stl|ply|obj"
+std::string formatNames(const char* between) {
+    std::string names;
+    for (const MeshFormatName& format : meshFormatNames())
+        names += (names.empty() ? "" : between) + std::string(format.extension + 1);
+    return names;
+}
+
+MeshFormat formatNamed(const std::string& text) {
+    for (const MeshFormatName& format : meshFormatNames())
+        if (text == format.extension + 1) return format.format;
+    throw UsageError("'" + text + "' is not one of " + formatNames(", "));
+}
+
+}  // namespace
+
 void declareFormat(OptionList& options, std::optional<MeshFormat>& format) {
-    options.value("--format", "stl|ply|obj|off|glb", "ply for lod, by the file's extension for mesh",
-                  "format of the meshes", [&](const std::string& v) {
-                      format = choice<MeshFormat>(v, {{"stl", MeshFormat::stl},
-                                                      {"ply", MeshFormat::ply},
-                                                      {"obj", MeshFormat::obj},
-                                                      {"off", MeshFormat::off},
-                                                      {"glb", MeshFormat::glb}});
-                  });
+    static const std::string names = formatNames("|");
+    options.value("--format", names, "ply for lod, by the file's extension for mesh", "format of the meshes",
+                  [&](const std::string& v) { format = formatNamed(v); });
 }
 
 void SpaceChoice::declare(OptionList& options) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/cad_model.h"
+#include "base/inflate.h"
 #include "base/polygon_triangles.h"
 #include "base/read_file.h"
 #include "base/text.h"
@@ -39,7 +40,7 @@ std::string nameOfFolder(const fs::path& folder) {
 
 // "L2" of "part_L2.ply" where the folder is "part"; else the file's own name.
 std::string levelName(const fs::path& file, const std::string& folder) {
-    const std::string stem = file.stem().string();
+    const std::string stem = withoutGz(file).stem().string();
     const bool isOurs = stem.rfind(folder + "_", 0) == 0 && stem.size() > folder.size() + 1;
     return isOurs ? stem.substr(folder.size() + 1) : file.filename().string();
 }
@@ -196,7 +197,7 @@ PagePointer pageOfReport(const fs::path& path, Console& console) {
 
 // The number behind the last L or s of "part_L12.ply"; nothing for other names.
 std::optional<long> numberOf(const fs::path& file) {
-    const std::string stem = file.stem().string();
+    const std::string stem = withoutGz(file).stem().string();
     const auto at = stem.find_last_not_of("0123456789");
     if (at == stem.npos || at + 1 == stem.size() || (stem[at] != 'L' && stem[at] != 's')) return std::nullopt;
     return std::stol(stem.substr(at + 1, 9));
@@ -311,7 +312,7 @@ view::PageOptions pageOptionsOf(const InputReport& input, const std::string& nam
 std::unique_ptr<view::Page> pageOf(const std::vector<fs::path>& inputs, Console& console) {
     const fs::path& first = inputs.front();
     if (!fs::exists(first)) throw InputError(first.string(), "no such file or folder");
-    const std::string title = first.stem().string();
+    const std::string title = withoutGz(first).stem().string();
     if (inputs.size() == 1 && fs::is_directory(first)) return pageOfFolder(first, console);
     if (isMeshPath(first)) {
         requireAll(

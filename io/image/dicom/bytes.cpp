@@ -1,10 +1,10 @@
 #include "io/image/dicom/bytes.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 
+#include "base/inflate.h"
 #include "isowave/error.h"
 
 namespace isowave::imageio {
@@ -14,21 +14,18 @@ constexpr std::int64_t kWindow = 1 << 16;
 constexpr std::size_t kMostInflated = std::size_t(1) << 31;
 
 // The end of a raw deflate stream may be followed by anything. Returns false for one that breaks off or is damaged.
-bool inflateRaw(const std::string& in, std::string& out) {
-    z_stream z{};
-    if (inflateInit2(&z, -15) != Z_OK) return false;
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(in.data()));
-    z.avail_in = static_cast<uInt>(in.size());
+bool inflateRaw(std::string_view in, std::string& out) {
+    InflateStream stream(DeflateWrapper::none);
     std::string block(1 << 18, '\0');
-    int status = Z_OK;
-    while (status == Z_OK && out.size() < kMostInflated) {
-        z.next_out = reinterpret_cast<Bytef*>(block.data());
-        z.avail_out = static_cast<uInt>(block.size());
-        status = inflate(&z, Z_NO_FLUSH);
-        out.append(block, 0, block.size() - z.avail_out);
+    auto state = InflateStream::State::going;
+    for (std::size_t came = 1;
+         state == InflateStream::State::going && came > 0 && out.size() < kMostInflated;) {
+        std::span<char> room(block);
+        state = stream.inflate(in, room);
+        came = block.size() - room.size();
+        out.append(block, 0, came);
     }
-    inflateEnd(&z);
-    return status == Z_STREAM_END;
+    return state == InflateStream::State::ended;
 }
 
 }  // namespace

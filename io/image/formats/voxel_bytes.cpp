@@ -1,7 +1,6 @@
 #include "io/image/formats/voxel_bytes.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -10,9 +9,11 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <span>
 
 #include "base/cad_model.h"
 #include "base/file_bytes.h"
+#include "base/inflate.h"
 #include "base/text.h"
 #include "io/image/check.h"
 #include "io/image/header.h"
@@ -84,67 +85,54 @@ class ForwardBytes : public VoxelBytes {
 class DeflatedBytes : public ForwardBytes {
   public:
     using ForwardBytes::ForwardBytes;
-    ~DeflatedBytes() override { close(); }
 
   private:
-    void close() {
-        if (open_) inflateEnd(&z_);
-        open_ = false;
-    }
-
     void restart() override {
-        close();
         file_ = std::ifstream(piece().file, std::ios::binary);
         file_.seekg(piece().start);
-        z_ = {};
-        open_ = inflateInit2(&z_, 15 + 32) == Z_OK;
+        stream_ = InflateStream();
         ended_ = false;
         in_.resize(1 << 16);
+        left_ = {};
     }
 
     // Whether there is anything left to inflate.
     bool fill() {
-        if (z_.avail_in > 0) return true;
+        if (!left_.empty()) return true;
         file_.read(in_.data(), static_cast<std::streamsize>(in_.size()));
-        z_.next_in = reinterpret_cast<Bytef*>(in_.data());
-        z_.avail_in = static_cast<uInt>(file_.gcount());
-        return z_.avail_in > 0;
+        left_ = {in_.data(), static_cast<std::size_t>(file_.gcount())};
+        return !left_.empty();
     }
 
-    // Inflates into [to, to + count); returns how many bytes came.
-    std::int64_t inflateSome(char* to, std::int64_t count) {
+    // Inflates to the front of `to`, which is shortened by what came.
+    void inflateSome(std::span<char>& to) {
         if (!fill()) throwBrokenOff(piece().file);
-        if (ended_) inflateReset(&z_);
-        z_.next_out = reinterpret_cast<Bytef*>(to);
-        z_.avail_out = static_cast<uInt>(std::min<std::int64_t>(count, 1 << 30));
-        const uInt before = z_.avail_out;
-        const int status = inflate(&z_, Z_NO_FLUSH);
-        ended_ = status == Z_STREAM_END;
-        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
+        if (ended_) stream_.restart();
+        const InflateStream::State state = stream_.inflate(left_, to);
+        ended_ = state == InflateStream::State::ended;
+        if (state == InflateStream::State::damaged)
             throw InputError(piece().file.string(),
-                             fmt::format("its compressed voxels are damaged ({})",
-                                         z_.msg ? oneLine(z_.msg) : std::string("no zlib or gzip stream")));
-        return before - z_.avail_out;
+                             fmt::format("its compressed voxels are damaged ({})", stream_.complaint()));
     }
 
     void next(char* to, std::int64_t count) override {
-        while (count > 0) {
-            const std::int64_t n = inflateSome(to, count);
-            to += n;
-            count -= n;
-        }
+        for (std::span<char> room(to, static_cast<std::size_t>(count)); !room.empty();) inflateSome(room);
     }
 
     // The end of the stream holds its checksum.
     void finish() override {
         std::array<char, 1 << 14> nowhere;
-        while (!ended_) inflateSome(nowhere.data(), nowhere.size());
+        while (!ended_) {
+            std::span<char> room(nowhere);
+            inflateSome(room);
+        }
     }
 
     std::ifstream file_;
     std::vector<char> in_;
-    z_stream z_{};
-    bool open_ = false, ended_ = false;
+    std::string_view left_;  // of in_
+    InflateStream stream_;
+    bool ended_ = false;
 };
 
 // Characters of a file, with the number of each line's first one forgotten: only what is wrong is said.

@@ -15,6 +15,7 @@
 
 #include "base/text.h"
 #include "io/mesh/lines.h"
+#include "io/mesh/xml/three_mf_units.h"
 #include "isowave/error.h"
 
 namespace isowave {
@@ -26,13 +27,6 @@ constexpr const char* kModelType = "http://schemas.microsoft.com/3dmanufacturing
 constexpr zip_uint64_t kMostBytes = zip_uint64_t(1) << 34;
 // Deflate's best: 1032 to 1.
 constexpr zip_uint64_t kBestRatio = 1040;
-
-struct Unit {
-    std::string_view name;
-    double millimetres;
-};
-constexpr Unit kUnits[] = {{"millimeter", 1}, {"micron", 1e-3}, {"centimeter", 10},
-                           {"inch", 25.4},    {"foot", 304.8},  {"meter", 1000}};
 
 // ---- zip
 
@@ -206,9 +200,9 @@ class ModelReader {
     void startModel(Attributes attributes) {
         isModel_ = true;
         const std::string unit = text(attributes, "unit");
-        const auto* const known =
-            std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return u.name == unit; });
-        if (known == std::end(kUnits) && !unit.empty())
+        const auto* const known = std::find_if(std::begin(kThreeMfUnits), std::end(kThreeMfUnits),
+                                               [&](const ThreeMfUnit& u) { return u.name == unit; });
+        if (known == std::end(kThreeMfUnits) && !unit.empty())
             fail("its unit is '" + shown(unit) + "', which 3MF has not");
         millimetres = unit.empty() ? 1 : known->millimetres;
     }
@@ -327,7 +321,9 @@ PolygonSoup readThreeMf(std::string_view bytes, const std::string& name) {
     }
     const auto text = archive.part(path, bytes.size());
     if (!text) throw InputError(name, "has no part '" + shown(path) + "', the model of a 3MF file");
-    return Assembly(ModelReader(*text, name), name).make();
+    PolygonSoup soup = Assembly(ModelReader(*text, name), name).make();
+    soup.space = spaceIn(std::string_view(*text).substr(0, text->find("<resources")));  // in its description
+    return soup;
 }
 
 }  // namespace isowave

@@ -12,7 +12,7 @@
 namespace isowave {
 
 // The triangles of all objects that the build lists, of all objects where it lists none. Colours, materials and names are not
-// kept. Throws InputError: no zip archive or a damaged one, no model in it, XML that is none (with line), a number that is none,
+// kept. The space is what the metadata before the objects say, as isowave writes it: SPACE=LPS. Throws InputError: no zip archive or a damaged one, no model in it, XML that is none (with line), a number that is none,
 // an object that is missing or holds itself, models in several files (the production extension).
 PolygonSoup readThreeMf(std::string_view bytes, const std::string& name);
 

@@ -9,12 +9,12 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <zlib.h>
 
 #include <cstring>
 #include <random>
 #include <set>
 
+#include "gzip.h"
 #include "isowave/image.h"
 #include "tests/io/image/dicom_writer.h"
 #include "tests/io/image/files.h"
@@ -27,6 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::bytesOf;
+using test::gzipped;
 using test::put;
 
 struct Mutation {
@@ -386,22 +387,6 @@ std::vector<Mutation> wholeFileMutations(const std::string& bytes) {
     for (std::size_t length = 1; length < bytes.size(); ++length)
         all.push_back({fmt::format("the first {} bytes", length), bytes.substr(0, length)});
     return all;
-}
-
-std::string gzipped(const std::string& text) {
-    uLongf length = compressBound(text.size()) + 100;
-    std::string out(length, '\0');
-    z_stream z{};
-    deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-    std::string in = text;
-    z.next_in = reinterpret_cast<Bytef*>(in.data());
-    z.avail_in = static_cast<uInt>(in.size());
-    z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(length);
-    deflate(&z, Z_FINISH);
-    out.resize(z.total_out);
-    deflateEnd(&z);
-    return out;
 }
 
 test::NiftiFile smallNifti() {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "gzip.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "temp_folder.h"
@@ -221,6 +222,41 @@ TEST(ReadMesh, RefusesEveryTruncation) {
                    "promises 4 points but the file ends after 2");
 }
 
+// Whatever the name says: gzip is told by the first two bytes, the format by the name without .gz.
+TEST(ReadMesh, InflatesWhatGzipHasCompressed) {
+    const std::pair<const char*, std::string> files[] = {{"a.stl", binaryStl(kBall)},
+                                                         {"a.ply", binaryPly(kBall, true)},
+                                                         {"a.obj", kTetrahedronObj},
+                                                         {"a.off", kTetrahedronOff}};
+    for (const auto& [name, bytes] : files) {
+        const TriangleMesh plain = readBytes(name, bytes);
+        EXPECT_FALSE(plain.triangles.empty());
+        for (const std::string& packedName :
+             {name + std::string(".gz"), name + std::string(".GZ"), std::string(name)}) {
+            MeshFileInfo info;
+            const TriangleMesh mesh = readBytes(packedName, test::gzipped(bytes), &info);
+            EXPECT_EQ(mesh.points, plain.points) << packedName;
+            EXPECT_EQ(mesh.triangles, plain.triangles) << packedName;
+            EXPECT_TRUE(isMeshPath(packedName));
+        }
+        EXPECT_EQ(readBytes(name + std::string(".gz"), bytes).triangles, plain.triangles) << "not compressed";
+    }
+    EXPECT_FALSE(isMeshPath("a.nii.gz"));
+}
+
+TEST(ReadMesh, RefusesGzipThatIsNotWholeOrTooLarge) {
+    const std::string packed = test::gzipped(binaryStl(kBall));
+    EXPECT_REFUSED("a.stl.gz", packed.substr(0, packed.size() / 2), "its gzip stream breaks off after");
+    EXPECT_REFUSED("a.stl", "\x1f\x8b\x08 zipped", "its gzip stream is damaged (unknown header flags set)");
+    EXPECT_REFUSED("a.stl.gz", test::gzipped("hello"), "a.stl.gz: 5 bytes are too few for an STL");
+    EXPECT_REFUSED("a.amf.gz", packed, "is an AMF file");
+    const fs::path path = written("b.stl.gz", packed);
+    EXPECT_NO_THROW(readMeshFile(path, {}, 1e6));
+    EXPECT_THAT([&] { readMeshFile(path, {}, 1000); },
+                refuses("inflates to more than 1 kB, the limit of memory"));
+    fs::remove(path);
+}
+
 TEST(ReadMesh, RefusesWhatIsNoMesh) {
     EXPECT_THAT([] { readMesh("no/such/file.stl"); }, refuses("no/such/file.stl: no such file"));
     EXPECT_THAT([] { readMesh(fs::temp_directory_path() / "x.txt"); }, refuses("'.txt' is no mesh format"));
@@ -229,7 +265,6 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
     fs::create_directories(folder);
     EXPECT_THAT([&] { readMesh(folder); }, refuses("is a folder"));
     EXPECT_REFUSED("a.obj", "", "is empty; expected a mesh file");
-    EXPECT_REFUSED("a.stl", "\x1f\x8b\x08 zipped", "gunzip it first");
     EXPECT_REFUSED("a.stl", "hello", "too few for an STL");
     EXPECT_REFUSED("a.stl", "solid nothing\nendsolid\n", "no triangles");
     EXPECT_REFUSED("a.stl", binaryStl({}), "no triangles");
@@ -617,9 +652,9 @@ TEST(ReadMesh, IsSilentAndSurvivesDamage) {
 }
 
 TEST(IsMeshPath, GoesByTheExtension) {
-    for (const char* name : {"a.stl", "b.STL", "c.Obj", "d.ply", "e.off", "f.glb"})
+    for (const char* name : {"a.stl", "b.STL", "c.Obj", "d.ply", "e.off", "f.glb", "a.stl.gz"})
         EXPECT_TRUE(isMeshPath(name)) << name;
-    for (const char* name : {"a.nrrd", "stl", "a.stl.gz", ""}) EXPECT_FALSE(isMeshPath(name)) << name;
+    for (const char* name : {"a.nrrd", "stl", "a.nii.gz", ""}) EXPECT_FALSE(isMeshPath(name)) << name;
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ namespace {
 using namespace isowave::testing;
 namespace fs = std::filesystem;
 
-constexpr std::array kFormats{MeshFormat::stl, MeshFormat::ply, MeshFormat::obj, MeshFormat::off,
-                              MeshFormat::glb};
+constexpr std::array kFormats{MeshFormat::stl, MeshFormat::ply, MeshFormat::obj,    MeshFormat::off,
+                              MeshFormat::glb, MeshFormat::vtp, MeshFormat::threeMf};
 
 fs::path freshFolder(const std::string& name) {
     const fs::path folder =
@@ -233,6 +233,18 @@ ReadMesh readGlb(const std::string& bytes) {
     return mesh;
 }
 
+// XML's formats, by the reader that xml_test.cpp and tests/field/meshes.py test.
+ReadMesh readXml(const std::string& bytes, MeshFormat format) {
+    const PolygonSoup soup = parseMesh(bytes, format, "written");
+    ReadMesh mesh;
+    mesh.comment = soup.space;
+    mesh.wide = !soup.float32;
+    mesh.points = soup.points;
+    for (std::size_t c = 0; c + 2 < soup.corners.size(); c += 3)
+        mesh.triangles.push_back({soup.corners[c], soup.corners[c + 1], soup.corners[c + 2]});
+    return mesh;
+}
+
 ReadMesh readMesh(const fs::path& path, MeshFormat format) {
     const std::string bytes = bytesOf(path);
     switch (format) {
@@ -246,6 +258,9 @@ ReadMesh readMesh(const fs::path& path, MeshFormat format) {
             return readOff(bytes);
         case MeshFormat::glb:
             return readGlb(bytes);
+        case MeshFormat::vtp:
+        case MeshFormat::threeMf:
+            return readXml(bytes, format);
     }
     return {};
 }
@@ -275,8 +290,8 @@ TEST(MeshFormat, IsKnownByExtensionAndNameInAnyCase) {
     EXPECT_EQ(meshFormatFromName("Ply"), MeshFormat::ply);
 }
 
-TEST(MeshFormat, NamesTheFiveForAnother) {
-    for (const char* path : {"a.3mf", "a", "a.stl.gz"}) {
+TEST(MeshFormat, NamesThemAllForAnother) {
+    for (const char* path : {"a.amf", "a", "a.stl.gz"}) {
         try {
             meshFormatOf(path);
             FAIL() << path;
@@ -293,12 +308,13 @@ TEST(MeshFormat, NamesTheFiveForAnother) {
 
 TEST(MeshWriter, IndexedFormatsKeepTrianglesAndNormals) {
     const TriangleMesh mesh = ringMesh();
-    for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj, MeshFormat::off, MeshFormat::glb}) {
+    for (const MeshFormat format :
+         {MeshFormat::ply, MeshFormat::obj, MeshFormat::off, MeshFormat::glb, MeshFormat::vtp}) {
         const ReadMesh read = writeAndRead(mesh, format);
         EXPECT_EQ(read.triangles, mesh.triangles) << extensionOf(format);
         ASSERT_EQ(read.points.size(), mesh.points.size());
         EXPECT_EQ(read.comment, "");
-        if (format != MeshFormat::off) {
+        if (format != MeshFormat::off && format != MeshFormat::vtp) {  // whose normals the reader drops
             EXPECT_EQ(read.normals.size(), mesh.normals.size());
         }
         if (format == MeshFormat::ply || format == MeshFormat::obj) {
@@ -355,8 +371,10 @@ TEST(MeshWriter, SaysItsSpaceAndTurnsToRas) {
     const TriangleMesh mesh = ringMesh();
     const double volume = topologyOf(mesh).volume;
     for (const MeshFormat format : kFormats) {
-        const ReadMesh lps = writeAndRead(mesh, format, {.space = Space::lps, .metresPerUnit = 1});
-        const ReadMesh ras = writeAndRead(mesh, format, {.space = Space::ras, .metresPerUnit = 1});
+        // So that coordinates are read back as they were: GLB is read in metres, 3MF in mm.
+        const double metres = format == MeshFormat::threeMf ? 0.001 : 1;
+        const ReadMesh lps = writeAndRead(mesh, format, {.space = Space::lps, .metresPerUnit = metres});
+        const ReadMesh ras = writeAndRead(mesh, format, {.space = Space::ras, .metresPerUnit = metres});
         EXPECT_EQ(lps.comment, "LPS") << extensionOf(format);
         EXPECT_EQ(ras.comment, "RAS") << extensionOf(format);
         const int y = format == MeshFormat::glb ? 2 : 1;  // where the y coordinate went
@@ -385,6 +403,64 @@ TEST(MeshWriter, BytesDependOnTheMeshAlone) {
         }
         EXPECT_GT(first.size(), 100000u);
     }
+}
+
+// ---- distances to level 0
+
+TEST(MeshWriter, DistancesAreAPropertyOfPly) {
+    const TriangleMesh mesh = ringMesh();
+    MeshWriteOptions options;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        options.distanceToLevel0.push_back(0.25F * static_cast<float>(i));
+    const fs::path path = freshFolder("distances") / "a.ply";
+    writeMesh(path, mesh, MeshFormat::ply, options);
+    const std::string bytes = bytesOf(path);
+    const std::string last = "property float nz\nproperty float distance_to_level0\nelement face";
+    EXPECT_NE(bytes.find(last), std::string::npos);
+    constexpr std::size_t kVertex = 7 * sizeof(float);
+    std::size_t at = bytes.find("end_header\n") + 11 + 6 * sizeof(float);
+    for (std::size_t i = 0; i < mesh.points.size(); ++i, at += kVertex) {
+        std::size_t here = at;
+        ASSERT_EQ(take<float>(bytes, here), options.distanceToLevel0[i]);
+    }
+    EXPECT_EQ(isowave::readMesh(path).triangles, mesh.triangles);
+    fs::remove_all(path.parent_path());
+}
+
+// Pale for no distance, dark for the range; linear light of sRGB 226 222 211 and 66 10 62 (IEC 61966-2-1).
+TEST(MeshWriter, DistancesAreAnAttributeAndColoursOfGlb) {
+    const TriangleMesh mesh = ringMesh();
+    MeshWriteOptions options;
+    options.distanceToLevel0.assign(mesh.points.size(), 0);
+    options.distanceToLevel0[1] = 2;
+    options.distanceToLevel0[2] = 0.5;
+    const fs::path path = freshFolder("distances") / "a.glb";
+    writeMesh(path, mesh, MeshFormat::glb, options);
+    const std::string bytes = bytesOf(path);
+    const nlohmann::json json = readGlb(bytes).json;
+    fs::remove_all(path.parent_path());
+    const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+    const std::size_t binary = bytes.size() - json["buffers"][0]["byteLength"].get<std::size_t>();
+    const auto startOf = [&](const char* name) {
+        const auto& accessor = json["accessors"][attributes[name].get<std::size_t>()];
+        EXPECT_EQ(accessor["count"], mesh.points.size());
+        return binary + json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"]
+                            .get<std::size_t>();
+    };
+    std::size_t at = startOf("_DISTANCE_TO_LEVEL0");
+    EXPECT_EQ(take<float>(bytes, at), 0);
+    EXPECT_EQ(take<float>(bytes, at), 2);
+    EXPECT_EQ(take<float>(bytes, at), 0.5F);
+    at = startOf("COLOR_0");
+    const auto linear = [](double c) { return std::pow((c / 255 + 0.055) / 1.055, 2.4); };
+    const std::array<double, 3> pale{linear(226), linear(222), linear(211)},
+        dark{linear(66), 10 / 255.0 / 12.92, linear(62)};
+    for (const auto& expected : {pale, dark}) {
+        const auto colour = take<std::array<std::uint16_t, 4>>(bytes, at);
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(colour[k] / 65'535.0, expected[k], 1e-5);
+        EXPECT_EQ(colour[3], 65'535);
+    }
+    EXPECT_EQ(json["meshes"][0]["extras"]["distance_of_last_colour"], 2);
 }
 
 // ---- float32

@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zip.h>
 
 #include "io/mesh/read.h"
+#include "io/mesh/xml/solid_parts.h"
 #include "io/mesh/xml/three_mf.h"
+#include "io/mesh/xml/three_mf_writer.h"
 #include "io/mesh/xml/vtp.h"
+#include "io/mesh/xml/vtp_writer.h"
 #include "isowave/error.h"
 #include "tests/io/mesh/zip.h"
 
@@ -218,6 +222,154 @@ TEST(ThreeMf, DamageIsRefused) {
     const std::string whole = threeMf(model(object, "<item objectid=\"1\"/>"));
     for (std::size_t length = 1; length < whole.size(); ++length)
         EXPECT_NE(refusal([&] { readThreeMf(whole.substr(0, length), "file"); }), "") << length;
+}
+
+// ---- written
+
+// A cube of side 2 h about c: facing outwards, or inwards as a cavity does.
+void addCube(TriangleMesh& mesh, double h, const Vec3& c, bool inwards = false) {
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    for (int i = 0; i < 8; ++i)
+        mesh.points.push_back({c.x + (i & 1 ? h : -h), c.y + (i & 2 ? h : -h), c.z + (i & 4 ? h : -h)});
+    constexpr Triangle kSides[] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (auto [a, b, d] : kSides) {
+        if (inwards) std::swap(b, d);
+        mesh.triangles.push_back({first + a, first + b, first + d});
+    }
+}
+
+// A cube with two cavities, in one of them a cube that has a cavity too, and a cube beside. Rays along x from the cavities' corners
+// run through edges of the other cubes.
+TriangleMesh cubesInCubes() {
+    TriangleMesh mesh;
+    addCube(mesh, 1, {6, 0, 0}, /*inwards=*/true);
+    addCube(mesh, 10, {0, 0, 0});
+    addCube(mesh, 3, {-4, 0, 0}, /*inwards=*/true);
+    addCube(mesh, 2, {-4, 0, 0});
+    addCube(mesh, 1, {-4, 0, 0}, /*inwards=*/true);
+    addCube(mesh, 1, {20, 0, 0});
+    return mesh;
+}
+
+TEST(SolidParts, CavitiesBelongToTheSmallestShellAroundThem) {
+    const TriangleMesh mesh = cubesInCubes();
+    const auto parts = solidParts(mesh.points, mesh.triangles);
+    ASSERT_EQ(parts.size(), 3u);
+    const auto volume = [&](const std::vector<Triangle>& part) {
+        PolygonSoup soup;
+        soup.points = mesh.points;
+        for (const Triangle& t : part) {
+            soup.corners.insert(soup.corners.end(), t.begin(), t.end());
+            soup.endFace();
+        }
+        return sixVolumes(soup) / 6;
+    };
+    EXPECT_DOUBLE_EQ(volume(parts[0]), 20 * 20 * 20 - 8 - 6 * 6 * 6);
+    EXPECT_DOUBLE_EQ(volume(parts[1]), 4 * 4 * 4 - 8);
+    EXPECT_DOUBLE_EQ(volume(parts[2]), 8);
+    // Every triangle once, in its order.
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    EXPECT_EQ(count, mesh.triangles.size());
+    EXPECT_EQ(parts[0].front(), mesh.triangles.front());
+    TriangleMesh alone;
+    addCube(alone, 1, {0, 0, 0}, /*inwards=*/true);
+    EXPECT_EQ(solidParts(alone.points, alone.triangles).size(), 1u);
+    EXPECT_TRUE(solidParts({}, {}).empty());
+}
+
+std::string written(const TriangleMesh& mesh, const auto& write, double metresPerUnit = 0.001) {
+    MeshView view;
+    view.points = mesh.points;
+    view.triangles = mesh.triangles;
+    view.metresPerUnit = metresPerUnit;
+    Sink sink;
+    write(sink, view);
+    return sink.take();
+}
+
+std::string writtenThreeMf(const TriangleMesh& mesh, double metresPerUnit = 0.001) {
+    return written(
+        mesh, [](Sink& sink, const MeshView& view) { writeThreeMf(sink, view, "file", "a<b"); },
+        metresPerUnit);
+}
+
+// The model of a 3MF as libzip has it.
+std::string modelOf(const std::string& archive) {
+    zip_source_t* const source = zip_source_buffer_create(archive.data(), archive.size(), 0, nullptr);
+    zip_t* const zip = zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, nullptr);
+    EXPECT_TRUE(zip);
+    EXPECT_EQ(zip_get_num_entries(zip, 0), 3);
+    zip_stat_t about;
+    EXPECT_EQ(zip_stat(zip, "3D/3dmodel.model", 0, &about), 0);
+    std::string text(about.size, ' ');
+    zip_file_t* const file = zip_fopen(zip, "3D/3dmodel.model", 0);
+    EXPECT_EQ(zip_fread(file, text.data(), text.size()), static_cast<zip_int64_t>(text.size()));
+    zip_fclose(file);
+    zip_discard(zip);
+    return text;
+}
+
+TEST(ThreeMf, HasAnObjectForEachPartWithItsNameAndColour) {
+    const std::string model = modelOf(writtenThreeMf(cubesInCubes()));
+    for (const char* words :
+         {"<model unit=\"millimeter\"", "<base name=\"a&lt;b 1\" displaycolor=\"#E69F00\"/>",
+          "<base name=\"a&lt;b 2\" displaycolor=\"#56B4E9\"/>",
+          "<object id=\"2\" type=\"model\" name=\"a&lt;b 1\" pid=\"1\" pindex=\"0\">",
+          "<object id=\"4\" type=\"model\" name=\"a&lt;b 3\" pid=\"1\" pindex=\"2\">",
+          "<item objectid=\"4\"/>"})
+        EXPECT_THAT(model, HasSubstr(words));
+    EXPECT_THAT(model, testing::Not(HasSubstr("<object id=\"5\"")));
+    TriangleMesh one;
+    addCube(one, 1, {0, 0, 0});
+    EXPECT_THAT(modelOf(writtenThreeMf(one)), HasSubstr("name=\"a&lt;b\" pid"));
+}
+
+TEST(ThreeMf, ReadsBackInEveryUnit) {
+    const TriangleMesh mesh = cubesInCubes();
+    const double cubes = 8000 - 8 - 216 + 64 - 8 + 8;
+    for (const auto& [metres, unit] : {std::pair{0.001, "\"millimeter\""},
+                                       {0.01, "\"centimeter\""},
+                                       {1.0, "\"meter\""},
+                                       {0.0254, "\"inch\""},
+                                       {0.3048, "\"foot\""},
+                                       {1e-6, "\"micron\""},
+                                       {1e-10, "\"millimeter\""}}) {
+        const std::string bytes = writtenThreeMf(mesh, metres);
+        EXPECT_THAT(modelOf(bytes), HasSubstr(std::string("<model unit=") + unit));
+        const PolygonSoup soup = readThreeMf(bytes, "file");
+        EXPECT_EQ(soup.faceCount(), mesh.triangles.size());
+        EXPECT_EQ(soup.points.size(), mesh.points.size());
+        const double mm = 1000 * metres;
+        EXPECT_NEAR(sixVolumes(soup) / 6 / (mm * mm * mm) / cubes, 1, 1e-6) << unit;
+    }
+    EXPECT_EQ(writtenThreeMf(mesh), writtenThreeMf(mesh));
+}
+
+TEST(ThreeMf, KeepsEveryDigitThatFloat32HasNot) {
+    TriangleMesh far;
+    addCube(far, 0.5, {1e6 + 0.3, 0, 0});
+    const PolygonSoup soup = readThreeMf(writtenThreeMf(far), "file");
+    ASSERT_EQ(soup.faceCount(), far.triangles.size());
+    for (std::size_t c = 0; c < soup.corners.size(); ++c)
+        EXPECT_EQ(soup.points[soup.corners[c]], far.points[far.triangles[c / 3][c % 3]]);
+}
+
+TEST(Vtp, ReadsBackAsItWasWritten) {
+    const TriangleMesh mesh = cubesInCubes();
+    const auto write = [](Sink& sink, const MeshView& view) { writeVtp(sink, view); };
+    const PolygonSoup soup = readVtp(written(mesh, write), "file");
+    EXPECT_TRUE(soup.float32);
+    EXPECT_EQ(soup.points, mesh.points);
+    EXPECT_EQ(soup.corners, std::vector<std::uint32_t>(&mesh.triangles[0][0],
+                                                       &mesh.triangles[0][0] + 3 * mesh.triangles.size()));
+    EXPECT_EQ(soup.droppedNote(), "");
+    TriangleMesh far;
+    addCube(far, 0.5, {1e6 + 0.3, 0, 0});
+    const PolygonSoup wide = readVtp(written(far, write), "file");
+    EXPECT_FALSE(wide.float32);
+    EXPECT_EQ(wide.points, far.points);
 }
 
 }  // namespace
