@@ -1,0 +1,23 @@
+// Step 0 to the bit: what synthesis misses of it by rounding.
+//
+// Coarsest field and details are float32, so that synthesis gives step 0 back to about 1e-6 K (docs/wavelets.md). A solid that is
+// edited in one place shall be what it was everywhere else, to the bit; but its coarsest field is another one, and what is
+// computed from that has other roundings everywhere. So a pyramid may carry the control points of step 0 where the two differ, and
+// Pyramid::field(0) puts them in their places.
+#pragma once
+
+#include "isowave/progress.h"
+#include "wavelets/pyramid.h"
+
+namespace isowave::wavelets {
+
+// From now on pyramid.field(0) is `field`, to the bit. REQUIRES: pyramid = analyse(field).
+void keepExactly(Pyramid& pyramid, const BSplineField& field, const Progress& progress = {});
+
+// The control points that pyramid carries, put into `field`, its step 0 as synthesis gives it.
+void restoreExactly(const Pyramid& pyramid, BSplineField& field);
+
+// Whether two fields have the same control points and signs everywhere, to the bit.
+bool areSame(const BSplineField& a, const BSplineField& b);
+
+}  // namespace isowave::wavelets
