@@ -32,20 +32,18 @@ void keepDifferent(openvdb::FloatTree& wanted, const openvdb::FloatTree& found) 
 
 }  // namespace
 
-void keepExactly(Pyramid& pyramid, const BSplineField& field, const Progress& progress) {
-    pyramid.exact = nullptr;
-    const BSplineField found = pyramid.field(0, progress);
-    auto wanted = openvdb::FloatGrid::create(0.0f);
-    wanted->setTree(std::make_shared<openvdb::FloatTree>(field.controlPoints->constTree()));
-    wanted->setTransform(field.transform().copy());
-    keepDifferent(wanted->tree(), found.controlPoints->constTree());
-    if (wanted->activeVoxelCount() > 0) pyramid.exact = wanted;
+openvdb::FloatGrid::Ptr missedOf(const BSplineField& wanted, const BSplineField& found) {
+    auto missed = openvdb::FloatGrid::create(0.0f);
+    missed->setTree(std::make_shared<openvdb::FloatTree>(wanted.controlPoints->constTree()));
+    missed->tree().root().setBackground(0.0f, true);
+    missed->setTransform(wanted.transform().copy());
+    keepDifferent(missed->tree(), found.controlPoints->constTree());
+    return missed->activeVoxelCount() > 0 ? missed : nullptr;
 }
 
-void restoreExactly(const Pyramid& pyramid, BSplineField& field) {
-    if (!pyramid.exact) return;
-    for (auto leaf = pyramid.exact->constTree().cbeginLeaf(); leaf; ++leaf) {
-        Leaf* there = field.controlPoints->tree().probeLeaf(leaf->origin());
+void restore(const openvdb::FloatGrid& missed, BSplineField& found) {
+    for (auto leaf = missed.constTree().cbeginLeaf(); leaf; ++leaf) {
+        Leaf* there = found.controlPoints->tree().probeLeaf(leaf->origin());
         if (!there) continue;
         for (auto value = leaf->cbeginValueOn(); value; ++value)
             if (there->isValueOn(value.pos())) there->setValueOnly(value.pos(), *value);

@@ -6,16 +6,15 @@
 // Pyramid::field(0) puts them in their places.
 #pragma once
 
-#include "isowave/progress.h"
-#include "wavelets/pyramid.h"
+#include "volume/field.h"
 
 namespace isowave::wavelets {
 
-// From now on pyramid.field(0) is `field`, to the bit. REQUIRES: pyramid = analyse(field).
-void keepExactly(Pyramid& pyramid, const BSplineField& field, const Progress& progress = {});
+// The control points of `wanted` where those of `found`, which has the same shape, are other ones: active there. Null where none is.
+openvdb::FloatGrid::Ptr missedOf(const BSplineField& wanted, const BSplineField& found);
 
-// The control points that pyramid carries, put into `field`, its step 0 as synthesis gives it.
-void restoreExactly(const Pyramid& pyramid, BSplineField& field);
+// Puts them into `found`.
+void restore(const openvdb::FloatGrid& missed, BSplineField& found);
 
 // Whether two fields have the same control points and signs everywhere, to the bit.
 bool areSame(const BSplineField& a, const BSplineField& b);

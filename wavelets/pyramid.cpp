@@ -86,7 +86,7 @@ BSplineField Pyramid::field(int step, const Progress& progress) const {
         progress("synthesising", double(stepCount() - 1 - s) / std::max(1, stepCount() - step));
         current = synthesiseDirection(current, *fine.details, *fine.shape, fine.axis, progress);
     }
-    if (step == 0) restoreExactly(*this, current);
+    if (step == 0 && exact) restore(*exact, current);
     progress("synthesising", 1);
     return current;
 }

@@ -24,6 +24,7 @@
 #include "polygonize/polygonize.h"
 #include "volume/vdb_file.h"
 #include "wavelets/exact.h"
+#include "wavelets/keep_exactly.h"
 #include "wavelets/pyramid_file.h"
 
 namespace isowave {
@@ -112,6 +113,12 @@ class Editor {
         measured_ = measured(field_, progress_);
         story_.volumeAfter = measured_->volume;
         story_.partsAfter = measured_->parts;
+        if (!std::holds_alternative<EditWith>(edit) && story_.volumeAfter == story_.volumeBefore)
+            throw InputError(
+                story_.text,
+                fmt::format("leaves the surface where it is; no part of the tool that could change it "
+                            "is as wide as a voxel of level {}",
+                            options_.level));
         if (std::holds_alternative<EditAdd>(edit) && story_.partsAfter > story_.partsBefore)
             progress_.say(story_.text + ": touches nothing; it is a part of its own");
         stories_.push_back(std::move(story_));

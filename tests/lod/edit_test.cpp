@@ -262,6 +262,8 @@ TEST(Edit, RefusesWhatMakesNoSense) {
     EXPECT_THAT(message({EditMove{{{100, 100, 100}, {110, 110, 110}}, {1, 0, 0}}}, {}),
                 HasSubstr("misses the solid"));
     EXPECT_THAT(message({EditAdd{inside}}, {}), HasSubstr("lies in the solid altogether"));
+    EXPECT_THAT(message({EditAdd{Ball{{20.5, 18.5, 30.5}, 0.3}}}, {}),
+                HasSubstr("leaves the surface where it is"));
     EXPECT_THAT(message({EditCut{Ball{{20, 18, 10}, 60}}}, {}), HasSubstr("removes all of the solid"));
     EXPECT_THAT(message({EditAdd{Ball{{0, 0, 0}, 1e6}}}, {}), HasSubstr("units of the solid"));
     EXPECT_THAT(message({EditAdd{Ball{{1e12, 0, 0}, 1}}}, {}), HasSubstr("units of the solid"));
