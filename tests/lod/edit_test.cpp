@@ -1,4 +1,5 @@
 // Edits: the volume of the tool, all else to the bit, a way back, and one line for what makes no sense.
+#include <map>
 #include <numbers>
 
 #include "isowave/openvdb.h"
@@ -114,6 +115,10 @@ TEST(Edit, LeavesEverythingElseToTheBit) {
         EXPECT_EQ(seen.different, 0);
         EXPECT_GT(seen.same, 10'000);
         EXPECT_GT(elsewhere(before, edited.pyramid, [](const auto&) { return false; }).different, 500);
+        const EditedPyramid round = edit(before, {what}, {.level = 1, .blend = 7});
+        EXPECT_EQ(elsewhere(before, round.pyramid, nearBall({boss.centre, boss.radius + 7 - 4}, 1)).different,
+                  0);
+        EXPECT_GT(elsewhere(before, round.pyramid, nearBall(boss, 1)).different, 0);
     }
 }
 
@@ -241,6 +246,53 @@ TEST(Edit, TakesALevelsControlPointsAndKeepsTheDetails) {
     EXPECT_NEAR(ribAfter, rib, 0.3);
     EXPECT_THROW(edit(before, {EditWith{level}}, {.level = 1}), InputError);
     EXPECT_THROW(edit(before, {EditWith{level}}, {.level = 0}), InputError);
+}
+
+// What lod/edit/unite.h leaves: min() of the level's values and of the tool's, cut as level 0 is, fitted on the level's lattice.
+double volumeByMinOnTheLevel(const Pyramid& before, const Ball& ball, int level) {
+    const Field field = before.field(kStepsPerLevel * level);
+    const auto grid = gridOf(field)->deepCopy();
+    const openvdb::math::Transform& lattice = grid->transform();
+    const double h = field.spacing()[0], halfWidth = 4;
+    const auto united = [&](const openvdb::Coord& at) {
+        const openvdb::Vec3d p = lattice.indexToWorld(at);
+        const double T = (p - openvdb::Vec3d(ball.centre.data())).length() - ball.radius;
+        return std::min(field.value({p.x(), p.y(), p.z()}), field.K() * std::clamp(T / halfWidth, -1.0, 1.0));
+    };
+    const openvdb::Coord middle =
+        openvdb::Coord::round(lattice.worldToIndex(openvdb::Vec3d(ball.centre.data())));
+    const int reach = static_cast<int>((ball.radius + halfWidth) / h) + 2;
+    std::map<openvdb::Coord, double> values;
+    const auto around = [&](int by, const auto& call) {
+        for (int x = -by; x <= by; ++x)
+            for (int y = -by; y <= by; ++y)
+                for (int z = -by; z <= by; ++z) call(middle.offsetBy(x, y, z));
+    };
+    around(reach + 1, [&](const openvdb::Coord& at) { values[at] = united(at); });
+    around(reach, [&](const openvdb::Coord& at) {
+        double c = 0;
+        for (int b = 0; b < 27; ++b) {
+            const openvdb::Coord by(b / 9 - 1, b / 3 % 3 - 1, b % 3 - 1);
+            double weight = 1;
+            for (int axis = 0; axis < 3; ++axis) weight *= by[axis] == 0 ? 8.0 / 6 : -1.0 / 6;
+            c += weight * values[at + by];
+        }
+        grid->tree().setValueOn(at, static_cast<float>(c));
+    });
+    const Field changed = fieldOf(grid, openvdb::BoolGrid::create(false), field.K());
+    return change(edit(before, {EditWith{changed}}, {.level = level}).report.edits[0]);
+}
+
+TEST(Edit, IsNearerToTheToolThanAnEditOfTheLevelsControlPoints) {
+    const Ball onPlate{{20.3, 25.1, 20}, 8};
+    const Pyramid before = plate();
+    for (const int level : {1, 2}) {
+        const double wanted = ballVolume(8) / 2, far = volumeByMinOnTheLevel(before, onPlate, level),
+                     near = change(edit(before, {EditAdd{onPlate}}, {.level = level}).report.edits[0]);
+        std::printf("level %d: %.4f, on its control points %.4f\n", level, near / wanted, far / wanted);
+        EXPECT_LT(std::abs(near / wanted - 1), 0.02);
+        EXPECT_GT(std::abs(far / wanted - 1), 2 * std::abs(near / wanted - 1));
+    }
 }
 
 TEST(Edit, RefusesWhatMakesNoSense) {
