@@ -92,6 +92,7 @@ std::int64_t bytesOf(const BSplineField& field) {
 
 std::int64_t bytesOf(const wavelets::Pyramid& pyramid) {
     std::int64_t bytes = bytesOf(pyramid.coarsest);
+    if (pyramid.exact) bytes += static_cast<std::int64_t>(pyramid.exact->memUsage());
     for (const wavelets::Step& step : pyramid.steps)
         bytes += static_cast<std::int64_t>(step.shape->memUsage() + step.details->memUsage());
     return bytes;

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "isowave/error.h"
@@ -63,18 +64,23 @@ void takeArguments(const ParsedCommand& parsed) {
                      "; see isowave " + name + " --help");
 }
 
-void takeOptions(const ParsedCommand& parsed) {
-    for (const auto& [option, found] : parsed.options) {
-        if (found->count() == 0) continue;
-        try {
-            if (option->repeats)
-                for (const std::string& value : found->results()) option->apply(value);
-            else
-                option->apply(option->isFlag() ? std::string() : found->as<std::string>());
-        } catch (const UsageError& error) {
-            throw UsageError(std::string(option->longName()) + ": " + error.what());
-        }
+void applyValue(const Option& option, const std::string& value) {
+    try {
+        option.apply(value);
+    } catch (const UsageError& error) {
+        throw UsageError(std::string(option.longName()) + ": " + error.what());
     }
+}
+
+// Those that may be given several times come first, in the order in which they stand on the line, whatever they are.
+void takeOptions(const ParsedCommand& parsed) {
+    std::map<const CLI::Option*, std::size_t> taken;
+    for (const CLI::Option* const next : parsed.app->parse_order())
+        for (const auto& [option, found] : parsed.options)
+            if (found == next && option->repeats) applyValue(*option, found->results().at(taken[found]++));
+    for (const auto& [option, found] : parsed.options)
+        if (found->count() > 0 && !option->repeats)
+            applyValue(*option, option->isFlag() ? std::string() : found->as<std::string>());
 }
 
 // Options come first: of "--iso -o out", -o is no number, and out is no argument too many.

@@ -7,9 +7,9 @@ namespace isowave::tools {
 Commands allCommands() {
     Commands commands;
     for (const auto& make :
-         {lodCommand, analyseCommand, packCommand, meshCommand, fieldCommand, infoCommand, checkCommand,
-          compareCommand, viewCommand, filtersCommand, curveLevelsCommand, reliefCommand, reverseCommand,
-          rebuildCommand, subdivideCommand, curvesCommand, helpCommand, completionCommand})
+         {lodCommand, analyseCommand, packCommand, editCommand, meshCommand, fieldCommand, infoCommand,
+          checkCommand, compareCommand, viewCommand, filtersCommand, curveLevelsCommand, reliefCommand,
+          reverseCommand, rebuildCommand, subdivideCommand, curvesCommand, helpCommand, completionCommand})
         commands.push_back(make());
     return commands;
 }

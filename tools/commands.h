@@ -19,6 +19,7 @@ Command* findCommand(const Commands& commands, std::string_view name);
 std::unique_ptr<Command> lodCommand();
 std::unique_ptr<Command> analyseCommand();
 std::unique_ptr<Command> packCommand();
+std::unique_ptr<Command> editCommand();
 std::unique_ptr<Command> meshCommand();
 std::unique_ptr<Command> fieldCommand();
 std::unique_ptr<Command> infoCommand();

@@ -41,6 +41,8 @@ bool looksLikeCorner(const std::string& text) {
            text.find_first_not_of(" 0123456789.,+-eEnaif") == std::string::npos;
 }
 
+constexpr std::string_view kBall = "ball:", kBox = "box:";
+
 int stepNumber(const std::string& text) { return static_cast<int>(integer(text, 0, kMostSteps)); }
 int levelNumber(const std::string& text) {
     return static_cast<int>(integer(text, 0, kMostSteps / kStepsPerLevel));
@@ -111,6 +113,35 @@ FineRegion region(const std::string& text) {
     if (hasLevel) result.level = levelNumber(text.substr(last + 1));
     result.where = place(text.substr(0, hasLevel ? last : std::string::npos));
     return result;
+}
+
+Point point(const std::string& text) {
+    const std::vector<double> numbers = list(text, number);
+    if (numbers.size() != 3) throw UsageError("'" + text + "' is not three numbers X,Y,Z");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+RegionBox box(const std::string& text) {
+    if (text.starts_with(kBox)) {
+        const std::vector<double> n = list(text.substr(kBox.size()), number);
+        if (n.size() != 6) throw UsageError("'" + text + "' is not a box, box:X,Y,Z,X,Y,Z");
+        return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    }
+    const auto colon = text.find(':');
+    if (colon == std::string::npos || text.find(':', colon + 1) != std::string::npos)
+        throw UsageError("'" + text + "' is not a box, two opposite corners X,Y,Z:X,Y,Z");
+    return {corner(text.substr(0, colon)), corner(text.substr(colon + 1))};
+}
+
+EditTool editTool(const std::string& text) {
+    if (text.starts_with(kBall)) {
+        const std::vector<double> n = list(text.substr(kBall.size()), number);
+        if (n.size() != 4) throw UsageError("'" + text + "' is not a ball, ball:X,Y,Z,R");
+        if (n[3] <= 0) throw UsageError("'" + text + "': the radius is not above 0");
+        return Ball{{n[0], n[1], n[2]}, n[3]};
+    }
+    if (text.starts_with(kBox) || looksLikeCorner(text.substr(0, text.find(':')))) return box(text);
+    return place(text);
 }
 
 std::array<double, 3> triple(const std::string& text, const char* example) {

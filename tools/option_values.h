@@ -12,6 +12,7 @@
 
 #include "isowave/error.h"
 #include "isowave/ladder.h"
+#include "isowave/pyramid.h"
 
 namespace isowave::tools {
 
@@ -26,6 +27,12 @@ StepRange range(const std::string& text);
 // BOX or MESH, then :LEVEL where it is not 0. BOX is X,Y,Z:X,Y,Z; all else is the name of a file, to which the last ":N" does not
 // belong.
 FineRegion region(const std::string& text);
+// X,Y,Z, any finite numbers.
+Point point(const std::string& text);
+// X,Y,Z:X,Y,Z or box:X,Y,Z,X,Y,Z.
+RegionBox box(const std::string& text);
+// ball:X,Y,Z,R, a box, or else the name of a mesh's file.
+EditTool editTool(const std::string& text);
 // AxBxC; commas will do too.
 std::array<double, 3> triple(const std::string& text, const char* example);
 std::array<std::int64_t, 3> wholeTriple(const std::string& text, const char* example);

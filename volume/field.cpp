@@ -53,7 +53,7 @@ openvdb::Vec3d evaluateGradient(const BSplineField& field, const openvdb::Vec3d&
     return sum;
 }
 
-std::int64_t definedNodeCount(const BSplineField& field) {
+openvdb::MaskTree definedNodes(const BSplineField& field) {
     // A node needs the 4^3 block i-1 .. i+2. Eroding the mask with that block, one axis at a time.
     openvdb::MaskTree mask(field.controlPoints->tree(), false, openvdb::TopologyCopy());
     for (int a = 0; a < 3; ++a) {
@@ -70,7 +70,11 @@ std::int64_t definedNodeCount(const BSplineField& field) {
                 if (!whole) leaf->setValueOff(voxel.pos());
             }
     }
-    return static_cast<std::int64_t>(mask.activeVoxelCount());
+    return mask;
+}
+
+std::int64_t definedNodeCount(const BSplineField& field) {
+    return static_cast<std::int64_t>(definedNodes(field).activeVoxelCount());
 }
 
 }  // namespace isowave

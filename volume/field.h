@@ -52,5 +52,6 @@ openvdb::Vec3d evaluateGradient(const BSplineField& field, const openvdb::Vec3d&
 // Number of nodes that the field needs: voxels i such that the control points i-1 .. i+2 on every axis are
 // all known ("defined nodes" of E-T2).
 std::int64_t definedNodeCount(const BSplineField& field);
+openvdb::MaskTree definedNodes(const BSplineField& field);
 
 }  // namespace isowave

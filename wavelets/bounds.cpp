@@ -57,6 +57,7 @@ BSplineField zerosLike(const BSplineField& field) {
 }  // namespace
 
 DroppedDetails dropDetails(Pyramid& pyramid, std::span<const double> below, const Progress& progress) {
+    pyramid.exact = nullptr;  // step 0 becomes another one
     assert(static_cast<int>(below.size()) == pyramid.stepCount());
     // The bounds themselves are stored as float32, rounded once a step; twice an ulp is enough for that.
     constexpr double kRounding = 1 + 2 * double{std::numeric_limits<float>::epsilon()};

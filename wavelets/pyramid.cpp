@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "wavelets/exact.h"
+
 namespace isowave::wavelets {
 namespace {
 
@@ -84,6 +86,7 @@ BSplineField Pyramid::field(int step, const Progress& progress) const {
         progress("synthesising", double(stepCount() - 1 - s) / std::max(1, stepCount() - step));
         current = synthesiseDirection(current, *fine.details, *fine.shape, fine.axis, progress);
     }
+    if (step == 0 && exact) restore(*exact, current);
     progress("synthesising", 1);
     return current;
 }

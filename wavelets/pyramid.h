@@ -27,6 +27,8 @@ struct Pyramid {
     BSplineField coarsest;    // the field of step steps.size()
     std::vector<Step> steps;  // finest first
     double K = 1.0;
+    // Of step 0, where synthesis misses them by rounding (wavelets/exact.h); null: nothing is known of that.
+    openvdb::FloatGrid::Ptr exact = {};
     // Where the solid came from: "input.path", "input.kind", "fit", ... Written into the file; free text.
     std::map<std::string, std::string> source;
 

@@ -20,6 +20,7 @@ const std::string kSource = "isowave:source:";
 constexpr const char* kPyramid = "pyramid";
 constexpr const char* kControlPoints = "control_points";
 constexpr const char* kShape = "shape";
+constexpr const char* kExact = "exact_000";
 
 std::string shapeName(std::size_t step) { return fmt::format("shape_{:03}", step); }
 std::string detailsName(std::size_t step) { return fmt::format("details_{:03}", step); }
@@ -40,6 +41,8 @@ class Parts {
         const auto grids = parts.read(names);
         for (std::size_t i = 0; i < names.size(); ++i) parts_[names[i]] = grids[i];
     }
+
+    bool has(const std::string& name) const { return parts_.at(name) != nullptr; }
 
     template <class Grid>
     typename Grid::Ptr take(const std::string& name) {
@@ -101,6 +104,7 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
         grids.push_back(named<Shape>(pyramid.steps[s].shape, shapeName(s)));
         grids.push_back(named<DetailGrid>(pyramid.steps[s].details, detailsName(s)));
     }
+    if (pyramid.exact) grids.push_back(named<openvdb::FloatGrid>(pyramid.exact, kExact));
     writeVdb(path, grids, meta);
 }
 
@@ -137,6 +141,7 @@ Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int6
         names.push_back(shapeName(s));
         names.push_back(detailsName(s));
     }
+    if (finestStep == 0) names.emplace_back(kExact);
     Parts parts(file, all, names);
     pyramid.coarsest.K = pyramid.K;
     pyramid.coarsest.controlPoints = parts.take<openvdb::FloatGrid>(kControlPoints);
@@ -148,6 +153,7 @@ Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int6
         pyramid.steps[s].shape = parts.take<Shape>(shapeName(s));
         pyramid.steps[s].details = parts.take<DetailGrid>(detailsName(s));
     }
+    if (finestStep == 0 && parts.has(kExact)) pyramid.exact = parts.take<openvdb::FloatGrid>(kExact);
     if (bytesRead) *bytesRead = all.bytesRead();
     return pyramid;
 }

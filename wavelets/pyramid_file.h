@@ -5,6 +5,7 @@
 //   shape            BoolGrid    its shape: active = known, value = inside
 //   shape_s          BoolGrid    the shape of step s
 //   details_s        FloatGrid   the details that turn step s+1 into step s: active = stored
+//   exact_000        FloatGrid   of edited solids: control points of step 0 where synthesis misses them by rounding (exact.h)
 // Metadata of the file:
 //   isowave:format   "pyramid"        isowave:version  1 (int32)      isowave:K  (double)
 //   isowave:axes     one of x, y, z for each step, finest first       isowave:source:KEY  free text

@@ -53,11 +53,6 @@ enum class Holding {
     none    // not at all: the plain wavelet level
 };
 
-// Two opposite corners, world coordinates.
-struct RegionBox {
-    Point low{}, high{};
-};
-
 // A part of space in which coarser levels keep the details of a finer one: inside, their surface is that level's own, and
 // over one voxel of the coarser level outside the details fade out. One closed mesh, whose triangles follow the local level.
 struct FineRegion {

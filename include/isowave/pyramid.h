@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "isowave/field.h"
@@ -76,6 +77,91 @@ ISOWAVE_EXPORT Pyramid analyse(Solid solid, const Progress& progress = {});
 // The solid that was taken apart, as open() gives it of the pyramid's file: levels are read off the pyramid, nothing is
 // analysed again. It shares the pyramid's memory.
 ISOWAVE_EXPORT Solid solidOf(const Pyramid& pyramid);
+
+// ---- edits: something is added to a solid, cut off it or moved, at a level
+//
+//   EditedPyramid edited = edit(pyramid, {EditAdd{Ball{{10, 0, 5}, 4}}, EditCut{"slot.stl"}}, {.level = 2});
+//   edited.pyramid.save("new.pyramid.vdb");
+//   edit(edited.pyramid, {EditWith{pyramid}});              // undone: the old pyramid
+//
+// Level 0 changes beside the tool alone, and is what it was elsewhere, to the bit; finer details stay where they still have
+// ground under them. All steps are analysed anew from it.
+
+// Two opposite corners, world coordinates.
+struct RegionBox {
+    Point low{}, high{};
+};
+struct Ball {
+    Point centre{};
+    double radius = 0;  // world units, above 0
+};
+// A ball, a box, or a closed mesh: its file, or its triangles; world coordinates.
+using EditTool = std::variant<Ball, RegionBox, std::filesystem::path, TriangleMesh>;
+
+struct EditAdd {
+    EditTool tool;
+};
+struct EditCut {
+    EditTool tool;
+};
+// What of the solid lies in the box is cut off, moved, with its details, and joined to the rest.
+struct EditMove {
+    RegionBox box;
+    Point by{};  // world units
+};
+// The level's control points are those of another field where the two differ, and finer details stay where the surface does: all
+// of them where the field does not change, none where it changes by K. Or, of a pyramid or a packed solid, its level 0 is taken
+// whole, which undoes edits. Either has the lattice of the solid (InputError). A file, or what it would hold.
+struct EditWith {
+    std::variant<std::filesystem::path, Field, Pyramid> other;
+};
+using Edit = std::variant<EditAdd, EditCut, EditMove, EditWith>;
+
+// Names in messages are those of the command's options.
+struct EditingOptions {
+    // Tools are sampled on this level's lattice, so that their edges and corners are as round as its surfaces are; EditWith's
+    // field is this level's.
+    int level = 0;
+    // Where EditAdd's or EditCut's tool meets the solid's surface, the edge becomes a fillet of this radius, world units, above 0;
+    // nothing: as sharp as level 0 can have it.
+    std::optional<double> blend = {};
+    // Makes the mesh of every step and counts those that are closed, oriented and 2-manifold. Takes as long as all steps' meshes.
+    bool checkSteps = false;
+};
+
+// One edit. Volumes in world units^3.
+struct EditStory {
+    std::string text;                          // "--add ball:0,0,0,5"
+    std::optional<double> toolVolume;          // of a ball, a box or a mesh
+    double volumeBefore = 0, volumeAfter = 0;  // of level 0's mesh, sampled twice a voxel
+    std::int64_t partsBefore = 0, partsAfter = 0;
+    std::int64_t touched = 0;  // control points of level 0 that are other ones
+    std::int64_t known = 0,
+                 forgotten = 0;  // lattice points that have come to be known, and that no longer are
+};
+
+struct EditReport {
+    int level = 0;
+    std::vector<EditStory> edits;
+    std::int64_t touchedOfLevel =
+        0;  // control points of the level that differ by more than 1e-4 K, or are known in one alone
+    std::int64_t controlPoints = 0;  // of level 0
+    std::int64_t steps = 0;
+    std::optional<std::int64_t> closedSteps;  // with checkSteps: steps with a surface
+    std::optional<std::int64_t> checkedSteps;
+    double seconds = 0;
+};
+
+struct EditedPyramid {
+    Pyramid pyramid;
+    EditReport report;
+};
+
+// Throws UsageError: no edits, a level that the pyramid does not have, numbers that make no sense; InputError: a tool that misses the
+// solid, an edit that changes nothing or removes everything, a mesh that is open or too large, a field of another lattice;
+// Cancelled. REQUIRES: a pyramid that was opened from step 0 on.
+ISOWAVE_EXPORT EditedPyramid edit(const Pyramid& pyramid, const std::vector<Edit>& edits,
+                                  const EditingOptions& options = {}, const Progress& progress = {});
 
 // ---- packed solids: level 0 in as few bytes as possible, from which all else is computed again
 //

@@ -112,13 +112,6 @@ class BoundedPacking {
     double bound_ = 0;                   // voxels
 };
 
-// A distance fit says how far F of K is; of any other the slope at the surface does.
-double voxelsPerKOf(const std::optional<FitSummary>& fit, const BSplineField& field, const std::string& name,
-                    const Progress& progress) {
-    if (fit && fit->method == FitMethod::distance && fit->halfWidth > 0) return fit->halfWidth;
-    return compress::measuredVoxelsPerK(field, name, progress);
-}
-
 std::map<std::string, std::string> sourceOf(const Solid& solid) {
     const InputReport& input = solid.input();
     return input.kind == InputReport::Kind::pyramid ? input.source : lod::sourceOf(input, solid.fit());
@@ -148,7 +141,7 @@ PackReport pack(Solid solid, const std::filesystem::path& path, const PackOption
     const BSplineField field = lod::fieldAtStep(std::move(solid), 0, progress, clock);
     compress::PackedBytes packed;
     if (options.bound || options.maxDistance) {
-        how.voxelsPerK = voxelsPerKOf(fit, field, name, progress);
+        how.voxelsPerK = lod::voxelsPerKOf(fit, field, name, progress);
         packed = BoundedPacking(field, name, options, progress).run(how, report);
     } else {
         packed = compress::pack(field, name, how, progress);
@@ -160,6 +153,12 @@ PackReport pack(Solid solid, const std::filesystem::path& path, const PackOption
 }
 
 namespace lod {
+
+double voxelsPerKOf(const std::optional<FitSummary>& fit, const BSplineField& field, const std::string& name,
+                    const Progress& progress) {
+    if (fit && fit->method == FitMethod::distance && fit->halfWidth > 0) return fit->halfWidth;
+    return compress::measuredVoxelsPerK(field, name, progress);
+}
 
 // Seen: about 60 bytes a control point while decoding, and the grids beside.
 double mostPackedPoints(const std::optional<double>& maxMemory) {

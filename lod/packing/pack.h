@@ -16,6 +16,10 @@ double mostPackedPoints(const std::optional<double>& maxMemory);
 compress::PackedField openPacked(const std::filesystem::path& path, const std::optional<double>& maxMemory,
                                  const Progress& progress);
 
+// F of K is a distance of so many voxels: of a distance fit its half-width, of any other what the slope at the surface says.
+double voxelsPerKOf(const std::optional<FitSummary>& fit, const BSplineField& field, const std::string& name,
+                    const Progress& progress);
+
 // Of pyramids, to the bit. Throws as isowave::pack() does.
 void packExactly(const BSplineField& field, const std::map<std::string, std::string>& source,
                  const std::filesystem::path& path);

@@ -8,10 +8,8 @@
 #include "isowave/error.h"
 
 namespace isowave::lod {
-namespace {
 
-// Exact on both sides.
-double distanceTo(const FineRegion::Box& box, const openvdb::Vec3d& p) {
+double distanceTo(const RegionBox& box, const openvdb::Vec3d& p) {
     double outside2 = 0, inside = -HUGE_VAL;
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -21,6 +19,8 @@ double distanceTo(const FineRegion::Box& box, const openvdb::Vec3d& p) {
     }
     return inside > 0 ? std::sqrt(outside2) : inside;
 }
+
+namespace {
 
 // The lines of the lattice through a mesh take 4 bytes each.
 void requireExtent(const std::vector<openvdb::Vec3d>& points, const RegionShape& shape) {

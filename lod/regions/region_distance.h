@@ -9,6 +9,9 @@
 
 namespace isowave::lod {
 
+// Signed, exact on both sides; world units.
+double distanceTo(const RegionBox& box, const openvdb::Vec3d& p);
+
 class RegionDistance {
   public:
     static constexpr double kLargest = 8192;  // voxels of a mesh, along an axis

@@ -50,8 +50,8 @@ std::shared_ptr<const TriangleHierarchy> hierarchyOf(const TriangleMesh& mesh) {
 }
 
 // A region has no holes that could be closed by a guess: the guess would say where details stay.
-RegionShape::Closed closed(TriangleMesh mesh, const std::string& name, const std::optional<double>& step,
-                           const Progress& progress) {
+RegionShape::Closed closed(TriangleMesh mesh, const std::string& name, const std::string& what,
+                           const std::optional<double>& step, const Progress& progress) {
     MeshRepairReport report;
     RepairOptions asIs;
     asIs.mayStayOpen = true;
@@ -59,24 +59,25 @@ RegionShape::Closed closed(TriangleMesh mesh, const std::string& name, const std
     RegionShape::Closed result;
     result.mesh = repairMesh(std::move(mesh), name, &report, asIs, progress);
     if (report.boundaryEdges > 0)
-        throw InputError(name,
-                         fmt::format("the mesh of a region is open ({} edges have one triangle, the first "
-                                     "of {} loops); close it, or give a box",
-                                     report.boundaryEdges, report.boundaryLoops));
+        throw InputError(name, fmt::format("the mesh of a {} is open ({} edges have one triangle, the first "
+                                           "of {} loops); close it, or give a box",
+                                           what, report.boundaryEdges, report.boundaryLoops));
     result.evenOdd = report.evenOdd;
     result.nearest = hierarchyOf(result.mesh);
     return result;
 }
 
-RegionShape::Closed closed(const FineRegion& region, const Progress& progress) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&region.where))
-        return closed(*mesh, "the mesh of a region", {}, progress);
-    const auto& path = std::get<std::filesystem::path>(region.where);
-    LoadedMesh loaded = loadMesh(path, progress);
-    return closed(std::move(loaded.mesh), path.string(), loaded.step, progress);
+}  // namespace
+
+RegionShape::Closed closedMesh(TriangleMesh mesh, const std::string& what, const Progress& progress) {
+    return closed(std::move(mesh), "the mesh of a " + what, what, {}, progress);
 }
 
-}  // namespace
+RegionShape::Closed closedMesh(const std::filesystem::path& path, const std::string& what,
+                               const Progress& progress) {
+    LoadedMesh loaded = loadMesh(path, progress);
+    return closed(std::move(loaded.mesh), path.string(), what, loaded.step, progress);
+}
 
 std::string textOf(const FineRegion& region) {
     if (const auto* box = std::get_if<FineRegion::Box>(&region.where))
@@ -120,7 +121,9 @@ RegionShape regionShapeOf(const FineRegion& region, const Progress& progress) {
             if (sorted.low[axis] > sorted.high[axis]) std::swap(sorted.low[axis], sorted.high[axis]);
         shape.where = sorted;
     } else {
-        shape.where = closed(region, progress);
+        const auto* mesh = std::get_if<TriangleMesh>(&region.where);
+        shape.where = mesh ? closedMesh(*mesh, "region", progress)
+                           : closedMesh(std::get<std::filesystem::path>(region.where), "region", progress);
     }
     return shape;
 }

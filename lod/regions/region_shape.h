@@ -33,6 +33,12 @@ struct RegionShape {
     PointBox bounds() const;
 };
 
+// A mesh, mended, of which it must be known what is in it. what: "region": for messages. Throws InputError for one that is
+// open or cannot be read.
+RegionShape::Closed closedMesh(const std::filesystem::path& path, const std::string& what,
+                               const Progress& progress);
+RegionShape::Closed closedMesh(TriangleMesh mesh, const std::string& what, const Progress& progress);
+
 // The box has its lower corner first; the mesh is read, and closed. Throws InputError for a mesh that is open or cannot be read.
 RegionShape regionShapeOf(const FineRegion& region, const Progress& progress);
 

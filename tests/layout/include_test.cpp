@@ -205,6 +205,7 @@ constexpr Registry kRegistries[] = {
     {"tools/curves/curves.cpp", kSubcommand},
     {"tools/solids/analyse.cpp", kSubcommand},
     {"tools/solids/pack.cpp", kSubcommand},
+    {"tools/solids/edit.cpp", kSubcommand},
     {"tools/solids/check.cpp", kSubcommand},
     {"tools/solids/compare.cpp", kSubcommand},
     {"tools/solids/field.cpp", kSubcommand},

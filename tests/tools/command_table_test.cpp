@@ -5,8 +5,8 @@ namespace isowave::tools_test {
 namespace {
 
 const std::vector<std::string> kCommands{
-    "lod",     "analyse",      "mesh",   "field",   "info",    "check",     "compare", "view",      "pack",
-    "filters", "curve-levels", "relief", "reverse", "rebuild", "subdivide", "help",    "completion"};
+    "lod",  "analyse", "mesh",         "field",  "info",    "check",   "compare",   "view", "pack",
+    "edit", "filters", "curve-levels", "relief", "reverse", "rebuild", "subdivide", "help", "completion"};
 
 TEST(Help, ListsEverySubcommandAndEveryExitCode) {
     const std::string text = succeed({"--help"}).out;
