@@ -262,25 +262,36 @@ EditOptions TopologyCandidates::cavity(const PersistentClass& c) const {
     return options;
 }
 
+// Growing plugs takes milliseconds a thing, and a large level has thousands: those that begin or end nearest to the surface go
+// first, and what comes after sixteen times as many as are wanted is left.
 std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::size_t most) const {
     std::vector<PersistentClass> wanted;
     for (const PersistentClass& c : classes_)
         if (c.dimension == static_cast<int>(what)) wanted.push_back(c);
-    const std::size_t largest = what == What::part ? largestPart() : 0;
-    std::vector<EditOptions> all(wanted.size());
-    forEachUntilStopped(wanted.size(), progress_, [&](std::size_t i) {
-        all[i] = what == What::part     ? part(wanted[i], largest)
-                 : what == What::handle ? handle(wanted[i])
-                                        : cavity(wanted[i]);
-        std::erase_if(all[i], [&](const EditOption& option) { return useless_.count(keyOf(option)) != 0; });
-        std::stable_sort(all[i].begin(), all[i].end(), isEstimatedLess);
-    });
-    std::erase_if(all, [](const EditOptions& options) { return options.empty(); });
+    const auto depth = [](const PersistentClass& c) { return std::min(-c.birth, c.death); };
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [&](const PersistentClass& a, const PersistentClass& b) { return depth(a) < depth(b); });
+    const std::size_t largest = what == What::part ? largestPart() : 0, enough = 16 * most;
+    std::vector<EditOptions> all;
+    for (std::size_t done = 0; done < wanted.size() && all.size() < enough; done += enough) {
+        std::vector<EditOptions> next(std::min(enough, wanted.size() - done));
+        forEachUntilStopped(next.size(), progress_,
+                            [&](std::size_t i) { next[i] = optionsOf(wanted[done + i], largest); });
+        for (EditOptions& options : next)
+            if (!options.empty()) all.push_back(std::move(options));
+    }
     std::stable_sort(all.begin(), all.end(), [](const EditOptions& a, const EditOptions& b) {
         return isEstimatedLess(a.front(), b.front());
     });
     if (all.size() > most) all.resize(most);
     return all;
+}
+
+EditOptions TopologyCandidates::optionsOf(const PersistentClass& c, std::size_t largest) const {
+    EditOptions options = c.dimension == 0 ? part(c, largest) : c.dimension == 1 ? handle(c) : cavity(c);
+    std::erase_if(options, [&](const EditOption& option) { return useless_.count(keyOf(option)) != 0; });
+    std::stable_sort(options.begin(), options.end(), isEstimatedLess);
+    return options;
 }
 
 }  // namespace isowave

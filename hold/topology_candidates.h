@@ -78,6 +78,7 @@ class TopologyCandidates {
   private:
     using Points = std::vector<std::int64_t>;
 
+    EditOptions optionsOf(const PersistentClass& c, std::size_t largest) const;
     EditOptions handle(const PersistentClass& c) const;
     EditOptions part(const PersistentClass& c, std::size_t largest) const;
     EditOptions cavity(const PersistentClass& c) const;
