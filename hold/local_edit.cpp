@@ -120,18 +120,17 @@ void EditTrial::foresee() {
         marks_.push_back(patchBefore_.lattice().at(*at) < 0 ? kInside : 0);
     for (const Coord& c : plan_.points)
         for (auto at = CoordBBox(c.offsetBy(-refine_), c.offsetBy(refine_)).begin(); at; ++at)
-            marksAt(*at) |= kBeside;
+            marks_[markIndex(*at)] |= kBeside;
     for (const Coord& c : plan_.points)
-        marksAt(c) = static_cast<std::uint8_t>(kPlanned | (plan_.fill ? kInside : 0));
+        marks_[markIndex(c)] = static_cast<std::uint8_t>(kPlanned | (plan_.fill ? kInside : 0));
 }
-std::uint8_t& EditTrial::marksAt(const Coord& c) {
+std::size_t EditTrial::markIndex(const Coord& c) const {
     const Coord p = c - planned_.min(), size = planned_.dim();
-    return marks_[(std::size_t(p[0]) * size[1] + p[1]) * size[2] + p[2]];
+    return (std::size_t(p[0]) * size[1] + p[1]) * size[2] + p[2];
 }
-std::uint8_t EditTrial::marksAt(const Coord& c) const { return const_cast<EditTrial*>(this)->marksAt(c); }
 
 bool EditTrial::mustKeep(const Coord& c, bool thicker) const {
-    const std::uint8_t marks = marksAt(c);
+    const std::uint8_t marks = marks_[markIndex(c)];
     if (marks & kPlanned) return false;
     return !thicker || bool(marks & kInside) == plan_.fill || !(marks & kBeside);
 }
@@ -217,7 +216,7 @@ void EditTrial::addCell(const Coord& low, bool thicker, std::vector<FieldRow>& r
     unsigned pattern = 0;
     bool beside = false;
     for (int c = 0; c < kCellCorners; ++c) {
-        const std::uint8_t marks = marksAt(low.offsetBy(c & 1, c >> 1 & 1, c >> 2));
+        const std::uint8_t marks = marks_[markIndex(low.offsetBy(c & 1, c >> 1 & 1, c >> 2))];
         pattern |= static_cast<unsigned>(marks & kInside) << c;
         beside = beside || marks & kPlanned;
     }

@@ -55,8 +55,7 @@ class EditTrial {
     double meanStep() const;
 
     void foresee();
-    std::uint8_t& marksAt(const openvdb::Coord& c);
-    std::uint8_t marksAt(const openvdb::Coord& c) const;
+    std::size_t markIndex(const openvdb::Coord& c) const;
     bool mustKeep(const openvdb::Coord& c, bool thicker) const;
 
     void startBeyond(double margin);
