@@ -122,6 +122,53 @@ TEST(Edit, LeavesEverythingElseToTheBit) {
     }
 }
 
+double distanceTo(const RegionBox& box, const openvdb::Vec3d& p) {
+    openvdb::Vec3d out;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        out[static_cast<int>(axis)] = std::max(
+            {box.low[axis] - p[static_cast<int>(axis)], 0.0, p[static_cast<int>(axis)] - box.high[axis]});
+    return out.length();
+}
+
+// How far from the tool a point's control point, sign or being known differs. distance: not above 0 in the tool.
+template <class Distance>
+double reachOfChange(const Pyramid& before, const Pyramid& after, const Distance& distance) {
+    const BSplineField a = PyramidAccess::of(before).field(0), b = PyramidAccess::of(after).field(0);
+    openvdb::MaskTree either(a.controlPoints->constTree(), false, openvdb::TopologyCopy());
+    either.topologyUnion(b.controlPoints->constTree());
+    double farthest = 0;
+    for (auto point = either.cbeginValueOn(); point; ++point)
+        if (!sameAt(a, b, point.getCoord()))
+            farthest = std::max(farthest, distance(a.transform().indexToWorld(point.getCoord())));
+    return farthest;
+}
+
+// Edges and corners of a tool are rounded by its level's lattice, and must not reach farther for that.
+TEST(Edit, ReachesNoFartherThanTheHalfWidthOrTheFilletAndTwoVoxels) {
+    const RegionBox box{{11.2, 12.1, 14.3}, {24.1, 25.2, 29.4}};
+    const Ball ball{{20.3, 25.1, 20}, 6};
+    const Pyramid before = plate();
+    const auto toBox = [&](const openvdb::Vec3d& p) { return distanceTo(box, p); };
+    const auto toBall = [&](const openvdb::Vec3d& p) {
+        return (p - openvdb::Vec3d(ball.centre.data())).length() - ball.radius;
+    };
+    for (const int level : {0, 1, 2, 3})
+        for (const double r : {0.0, 1.0, 3.0, 5.0, 7.0})
+            for (const bool cut : {false, true}) {
+                const EditingOptions how{level, r > 0 ? std::optional(r) : std::nullopt};
+                const auto made = [&](const EditTool& tool) {
+                    return edit(before, {cut ? Edit(EditCut{tool}) : Edit(EditAdd{tool})}, how).pyramid;
+                };
+                const double ofBox = reachOfChange(before, made(box), toBox),
+                             ofBall = reachOfChange(before, made(ball), toBall);
+                std::printf("level %d, radius %g, %s: box %.3f, ball %.3f\n", level, r, cut ? "cut" : "add",
+                            ofBox, ofBall);
+                EXPECT_LE(ofBox, std::max(6.0, r + 2)) << level << ' ' << r << ' ' << cut;
+                EXPECT_LE(ofBall, std::max(6.0, r + 2)) << level << ' ' << r << ' ' << cut;
+                EXPECT_GT(ofBall, 3);
+            }
+}
+
 TEST(Edit, KeepsTheBitsInAFile) {
     const test::TempFolder folder;
     const Ball boss{{20.3, 25.1, 20}, 6};
@@ -132,7 +179,8 @@ TEST(Edit, KeepsTheBitsInAFile) {
     EXPECT_TRUE(
         wavelets::areSame(PyramidAccess::of(read).field(0), PyramidAccess::of(edited.pyramid).field(0)));
     EXPECT_EQ(elsewhere(before, read, nearBall(boss, 1)).different, 0);
-    EXPECT_EQ(read.source().count("edit.0"), 1U);
+    EXPECT_EQ(read.source().at("edit.0"),
+              "\"--add ball:20.3,25.1,20,6 --level 0\"");  // JSON, as all of a source
     EXPECT_EQ(read.source().count("input.volume"), 0U);
     // Of a pyramid without those control points the bits are others: the test can fail.
     wavelets::Pyramid without = PyramidAccess::of(read);
