@@ -116,8 +116,9 @@ class Editor {
         if (!std::holds_alternative<EditWith>(edit) && story_.volumeAfter == story_.volumeBefore)
             throw InputError(
                 story_.text,
-                fmt::format("leaves the surface where it is; no part of the tool that could change it "
-                            "is as wide as a voxel of level {}",
+                fmt::format("leaves the surface where it is; the tool {}, or changes it by less than a voxel "
+                            "of level {}",
+                            std::holds_alternative<EditAdd>(edit) ? "lies in the solid" : "misses the solid",
                             options_.level));
         if (std::holds_alternative<EditAdd>(edit) && story_.partsAfter > story_.partsBefore)
             progress_.say(story_.text + ": touches nothing; it is a part of its own");
