@@ -198,6 +198,8 @@ Fields fieldsOf(const std::optional<FitSummary>& fit, const InputReport& input) 
     return std::move(list).fields();
 }
 
+std::string valueOf(const std::string& text) { return textOf(text); }
+
 std::map<std::string, std::string> sourceOf(const InputReport& input, const std::optional<FitSummary>& fit) {
     Source source;
     for (auto& [key, text] : fieldsOf(input)) source["input." + key] = text;

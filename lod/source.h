@@ -24,6 +24,9 @@ Fields fieldsOf(const std::optional<FitSummary>& fit, const InputReport& input);
 // For wavelets::Pyramid::source: "input.path" -> "\"part.stl\"", "fit.method" -> "\"distance\"", ...
 std::map<std::string, std::string> sourceOf(const InputReport& input, const std::optional<FitSummary>& fit);
 
+// A text as such a value: part.stl -> "\"part.stl\"". Bytes that are no UTF-8 are replaced.
+std::string valueOf(const std::string& text);
+
 // The way back. What is missing, or of another type than it should be, stays empty. Null where the source does not speak of
 // an input.
 std::shared_ptr<const InputReport> inputOfSource(const std::map<std::string, std::string>& source);

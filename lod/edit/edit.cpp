@@ -116,8 +116,9 @@ class Editor {
         if (!std::holds_alternative<EditWith>(edit) && story_.volumeAfter == story_.volumeBefore)
             throw InputError(
                 story_.text,
-                fmt::format("leaves the surface where it is; no part of the tool that could change it "
-                            "is as wide as a voxel of level {}",
+                fmt::format("leaves the surface where it is; the tool {}, or changes it by less than a voxel "
+                            "of level {}",
+                            std::holds_alternative<EditAdd>(edit) ? "lies in the solid" : "misses the solid",
                             options_.level));
         if (std::holds_alternative<EditAdd>(edit) && story_.partsAfter > story_.partsBefore)
             progress_.say(story_.text + ": touches nothing; it is a part of its own");
@@ -284,7 +285,7 @@ Source editedSource(Source source, const std::vector<EditStory>& edits, const Ed
     for (const EditStory& edit : edits) {
         std::string text = fmt::format("{} --level {}", edit.text, options.level);
         if (options.blend) text += fmt::format(" --blend {:g}", *options.blend);
-        source[fmt::format("edit.{}", number++)] = std::move(text);
+        source[fmt::format("edit.{}", number++)] = valueOf(text);
     }
     return source;
 }
@@ -305,16 +306,18 @@ std::string pointText(const Point& p) { return fmt::format("{:g},{:g},{:g}", p[0
 }  // namespace
 
 std::string textOf(const Edit& edit) {
-    return std::visit(Overloaded{[](const EditAdd& e) { return "--add " + textOf(e.tool); },
-                                 [](const EditCut& e) { return "--cut " + textOf(e.tool); },
-                                 [](const EditMove& e) {
-                                     return "--move " + textOf(EditTool(e.box)) + " by " + pointText(e.by);
-                                 },
-                                 [](const EditWith& e) {
-                                     const auto* path = std::get_if<std::filesystem::path>(&e.other);
-                                     return "--with " + (path ? path->string() : "a field");
-                                 }},
-                      edit);
+    return std::visit(
+        Overloaded{
+            [](const EditAdd& e) { return "--add " + textOf(e.tool); },
+            [](const EditCut& e) { return "--cut " + textOf(e.tool); },
+            [](const EditMove& e) { return "--move " + textOf(EditTool(e.box)) + " by " + pointText(e.by); },
+            [](const EditWith& e) {
+                const auto* path = std::get_if<std::filesystem::path>(&e.other);
+                if (path) return "--with " + path->string();
+                return std::string("--with ") +
+                       (std::holds_alternative<Field>(e.other) ? "a field" : "a pyramid");
+            }},
+        edit);
 }
 
 }  // namespace lod

@@ -112,6 +112,8 @@ def triangles_of(mesh: Any, faces: Any = None) -> tuple[npt.NDArray[np.float64],
     points, corners = _raw(mesh, faces)
     if isinstance(corners, (list, tuple)):
         for number, face in enumerate(corners):
+            if np.ndim(face) != 1:
+                raise InputError(f"mesh: face {number} is {face!r}; expected three points' numbers, counted from 0")
             if len(face) != 3:
                 raise InputError(f"mesh: face {number} has {len(face)} corners; expected triangles; cut it into some")
     array = _whole(corners)

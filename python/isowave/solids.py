@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._adapters import Adapters
+from ._edits import Move, Tool, edits_of, listed
 from ._html import grouped, ladder_html, short
 from ._meshes import Mesh, PathLike, is_mesh, is_path, triangles_of
 from ._options import Given, given
@@ -152,6 +153,18 @@ def _points_of(points: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return array
 
 
+def _value_of(text: str) -> Any:
+    """A value of a pyramid's source: JSON, or what another program wrote there.
+
+    >>> _value_of("2.5"), _value_of('"distance"'), _value_of("by hand")
+    (2.5, 'distance', 'by hand')
+    """
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
 class Pyramid:
     """A solid taken apart step by step, without loss. Step s has s directions halved; level l is step 3 l.
 
@@ -163,10 +176,12 @@ class Pyramid:
     2
     """
 
-    def __init__(self, native: _native.Pyramid, remarks: Sequence[str] = ()) -> None:
+    def __init__(self, native: _native.Pyramid, remarks: Sequence[str] = (), report: Optional[str] = None) -> None:
         self._native = native
         #: Decisions that were taken, a line each.
         self.remarks = list(remarks)
+        #: Of what edit() made: what ``isowave edit --json`` writes, without files' names; None of all else.
+        self.report: Optional[dict[str, Any]] = json.loads(report) if report else None
 
     @classmethod
     def load(cls, path: PathLike) -> Pyramid:
@@ -209,7 +224,7 @@ class Pyramid:
     @property
     def source(self) -> dict[str, Any]:
         """Where the solid came from: "input.path", "fit.method", ..."""
-        return {key: json.loads(value) for key, value in self._native.source.items()}
+        return {key: _value_of(text) for key, text in self._native.source.items()}
 
     @property
     def steps(self) -> list[dict[str, Any]]:
@@ -222,6 +237,58 @@ class Pyramid:
         if not 0 <= step <= self.step_count:
             raise UsageError(f"--step: there is no step {step}; the pyramid has steps 0 to {self.step_count}")
         return Field(self._native.field(step, Watch(progress, threads)))
+
+    def edit(
+        self,
+        *,
+        add: Union[Tool, list[Tool], None] = None,
+        cut: Union[Tool, list[Tool], None] = None,
+        move: Union[Move, list[Move], None] = None,
+        with_: Union[Pyramid, Field, PathLike, None] = None,
+        level: int = 0,
+        blend: Optional[float] = None,
+        check: bool = False,
+        threads: Optional[int] = None,
+        progress: Optional[ProgressLike] = None,
+    ) -> Pyramid:
+        """A new pyramid, to which something is added, of which something is cut or moved, as ``isowave edit`` does it.
+
+        This one stays what it is. Away from the tools level 0 of the new one is the same to the bit. ``report`` has the
+        volumes before and after. Edits are made in the order add, cut, move, with_; another order is several calls, which
+        make the same bits as one.
+
+        add, cut: a tool or a list of tools: "ball:X,Y,Z,R" or (centre, radius); "X,Y,Z:X,Y,Z" or (low, high), a box; a path, a closed
+        mesh's file; a mesh, as check() takes it. World coordinates, LPS mm for images.
+        move: (box, by) or a list of these: what of the solid lies in the box, moved by (x, y, z).
+        with_: a Pyramid, whose level 0 is taken whole, which undoes edits; a Field of this level, changed elsewhere; the file of either.
+        level: tools are sampled on its lattice, so that their edges are as round as its surfaces are.
+        blend: radius of the fillet where a tool meets the surface, world units; without it the edge is sharp.
+        check: makes the mesh of every step and counts the closed ones, as ``report["steps_closed"]``.
+
+        Raises UsageError: no edit, a level that there is not, numbers that make no sense; InputError: a tool that misses the solid, an
+        edit that changes nothing or removes everything, a mesh that is open, a field of another lattice.
+
+        >>> ball = np.linalg.norm(np.indices((24, 24, 24)) - 11.5, axis=0) < 8
+        >>> pyramid = analyse(ball, spacing=(1, 1, 1))
+        >>> drilled = pyramid.edit(cut=((11.5, 11.5, 3.5), 3))
+        >>> -57 < drilled.report["edits"][0]["volume_change"] < -45  # about half a ball of radius 3
+        True
+        >>> np.array_equal(drilled.edit(with_=pyramid).field(0)([[8, 8, 4]]), pyramid.field(0)([[8, 8, 4]]))
+        True
+        """
+        watch = Watch(progress, threads)
+        edits = edits_of(add, cut, move, level, blend, check)
+        for other in listed(with_):
+            if isinstance(other, Pyramid):
+                edits.with_pyramid(other._native)
+            elif isinstance(other, Field):
+                edits.with_field(other._native)
+            elif is_path(other):
+                edits.with_file(os.fspath(other))
+            else:
+                raise UsageError(f"--with: {other!r} is a {type(other).__name__}; expected a Pyramid, a Field or a path")
+        native, report = _native.edit(self._native, edits, watch)
+        return Pyramid(native, self.remarks + watch.remarks, report)
 
     def __repr__(self) -> str:
         return f"<isowave.Pyramid: {self.step_count} steps, {self.coefficients_stored:,} coefficients>"

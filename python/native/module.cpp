@@ -1,6 +1,7 @@
 // isowave._native: the public library, bound thinly; python/isowave makes it pleasant.
 #include "isowave/version.h"
 #include "python/native/curves.h"
+#include "python/native/edits.h"
 #include "python/native/errors.h"
 #include "python/native/filters.h"
 #include "python/native/ladder.h"
@@ -16,6 +17,7 @@ PYBIND11_MODULE(_native, module) {
     isowave::python::bindSolid(module);
     isowave::python::bindLadder(module);
     isowave::python::bindPyramid(module);
+    isowave::python::bindEdits(module);
     isowave::python::bindMeasure(module);
     isowave::python::bindCurves(module);
     isowave::python::bindFilters(module);

@@ -116,10 +116,57 @@ TEST(Edit, LeavesEverythingElseToTheBit) {
         EXPECT_GT(seen.same, 10'000);
         EXPECT_GT(elsewhere(before, edited.pyramid, [](const auto&) { return false; }).different, 500);
         const EditedPyramid round = edit(before, {what}, {.level = 1, .blend = 7});
-        EXPECT_EQ(elsewhere(before, round.pyramid, nearBall({boss.centre, boss.radius + 7 - 4}, 1)).different,
+        EXPECT_EQ(elsewhere(before, round.pyramid, nearBall({boss.centre, boss.radius + 7 - 3}, 1)).different,
                   0);
         EXPECT_GT(elsewhere(before, round.pyramid, nearBall(boss, 1)).different, 0);
     }
+}
+
+double distanceTo(const RegionBox& box, const openvdb::Vec3d& p) {
+    openvdb::Vec3d out;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        out[static_cast<int>(axis)] = std::max(
+            {box.low[axis] - p[static_cast<int>(axis)], 0.0, p[static_cast<int>(axis)] - box.high[axis]});
+    return out.length();
+}
+
+// How far from the tool a point's control point, sign or being known differs. distance: not above 0 in the tool.
+template <class Distance>
+double reachOfChange(const Pyramid& before, const Pyramid& after, const Distance& distance) {
+    const BSplineField a = PyramidAccess::of(before).field(0), b = PyramidAccess::of(after).field(0);
+    openvdb::MaskTree either(a.controlPoints->constTree(), false, openvdb::TopologyCopy());
+    either.topologyUnion(b.controlPoints->constTree());
+    double farthest = 0;
+    for (auto point = either.cbeginValueOn(); point; ++point)
+        if (!sameAt(a, b, point.getCoord()))
+            farthest = std::max(farthest, distance(a.transform().indexToWorld(point.getCoord())));
+    return farthest;
+}
+
+// Seen: 5.6 voxels where the half-width is 4, and R + 2.1 at a corner of the box on level 1's lattice.
+TEST(Edit, ReachesNoFartherThanSixVoxelsOrTheFilletAndThree) {
+    const RegionBox box{{11.2, 12.1, 14.3}, {24.1, 25.2, 29.4}};
+    const Ball ball{{20.3, 25.1, 20}, 6};
+    const Pyramid before = plate();
+    const auto toBox = [&](const openvdb::Vec3d& p) { return distanceTo(box, p); };
+    const auto toBall = [&](const openvdb::Vec3d& p) {
+        return (p - openvdb::Vec3d(ball.centre.data())).length() - ball.radius;
+    };
+    for (const int level : {0, 1, 3})
+        for (const double r : {0.0, 5.0})
+            for (const bool cut : {false, true}) {
+                const EditingOptions how{level, r > 0 ? std::optional(r) : std::nullopt};
+                const auto made = [&](const EditTool& tool) {
+                    return edit(before, {cut ? Edit(EditCut{tool}) : Edit(EditAdd{tool})}, how).pyramid;
+                };
+                const double ofBox = reachOfChange(before, made(box), toBox),
+                             ofBall = reachOfChange(before, made(ball), toBall);
+                std::printf("level %d, radius %g, %s: box %.3f, ball %.3f\n", level, r, cut ? "cut" : "add",
+                            ofBox, ofBall);
+                EXPECT_LE(ofBox, std::max(6.0, r + 3)) << level << ' ' << r << ' ' << cut;
+                EXPECT_LE(ofBall, std::max(6.0, r + 3)) << level << ' ' << r << ' ' << cut;
+                EXPECT_GT(ofBall, 3);
+            }
 }
 
 TEST(Edit, KeepsTheBitsInAFile) {
@@ -132,7 +179,8 @@ TEST(Edit, KeepsTheBitsInAFile) {
     EXPECT_TRUE(
         wavelets::areSame(PyramidAccess::of(read).field(0), PyramidAccess::of(edited.pyramid).field(0)));
     EXPECT_EQ(elsewhere(before, read, nearBall(boss, 1)).different, 0);
-    EXPECT_EQ(read.source().count("edit.0"), 1U);
+    EXPECT_EQ(read.source().at("edit.0"),
+              "\"--add ball:20.3,25.1,20,6 --level 0\"");  // JSON, as all of a source
     EXPECT_EQ(read.source().count("input.volume"), 0U);
     // Of a pyramid without those control points the bits are others: the test can fail.
     wavelets::Pyramid without = PyramidAccess::of(read);
@@ -315,7 +363,7 @@ TEST(Edit, RefusesWhatMakesNoSense) {
                 HasSubstr("misses the solid"));
     EXPECT_THAT(message({EditAdd{inside}}, {}), HasSubstr("lies in the solid altogether"));
     EXPECT_THAT(message({EditAdd{Ball{{20.5, 18.5, 30.5}, 0.3}}}, {}),
-                HasSubstr("leaves the surface where it is"));
+                HasSubstr("lies in the solid, or changes it by less than a voxel of level 0"));
     EXPECT_THAT(message({EditCut{Ball{{20, 18, 10}, 60}}}, {}), HasSubstr("removes all of the solid"));
     EXPECT_THAT(message({EditAdd{Ball{{0, 0, 0}, 1e6}}}, {}), HasSubstr("units of the solid"));
     EXPECT_THAT(message({EditAdd{Ball{{1e12, 0, 0}, 1}}}, {}), HasSubstr("units of the solid"));

@@ -38,8 +38,8 @@ std::string jsonOf(const EditTale& tale) {
     const EditReport& r = tale.report;
     Json json;
     json["version"] = 1;
-    json["input"] = tale.input;
-    json["output"] = tale.output;
+    json["input"] = tale.input ? Json(*tale.input) : Json(nullptr);
+    json["output"] = tale.output ? Json(*tale.output) : Json(nullptr);
     json["level"] = r.level;
     json["edits"] = Json::array();
     for (const EditStory& edit : r.edits) json["edits"].push_back(jsonOf(edit));
@@ -56,7 +56,7 @@ std::string jsonOf(const EditTale& tale) {
 std::string textOf(const EditTale& tale) {
     std::string text;
     for (const EditStory& edit : tale.report.edits) text += textOf(edit);
-    text += fmt::format("{}: {} steps, {} control points; {} of level {} touched\n", tale.output,
+    text += fmt::format("{}: {} steps, {} control points; {} of level {} touched\n", *tale.output,
                         tale.report.steps, grouped(tale.report.controlPoints),
                         grouped(tale.report.touchedOfLevel), tale.report.level);
     if (tale.report.checkedSteps)

@@ -1,6 +1,7 @@
 // What `isowave edit` tells.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,11 @@
 namespace isowave::tools {
 
 struct EditTale {
-    std::string input, output;
+    std::optional<std::string> input, output;  // files; nothing where there are none
     EditReport report;
     std::vector<std::string> remarks;
 };
 std::string jsonOf(const EditTale& tale);
-std::string textOf(const EditTale& tale);
+std::string textOf(const EditTale& tale);  // REQUIRES: output
 
 }  // namespace isowave::tools

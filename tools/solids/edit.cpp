@@ -3,9 +3,9 @@
 #include "isowave/pyramid.h"
 #include "tools/commands.h"
 #include "tools/console.h"
-#include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/edit_report.h"
+#include "tools/solids/edit_options.h"
 
 namespace isowave::tools {
 namespace {
@@ -19,12 +19,9 @@ class EditCommand : public Command {
     int run(Console& console) override;
 
   private:
-    void declareEdits();
-    void moveLast(const std::string& by);
     void checkOutput() const;
 
-    std::vector<Edit> edits_;
-    EditingOptions how_;
+    EditChoices choices_;
 };
 
 EditCommand::EditCommand()
@@ -34,43 +31,10 @@ EditCommand::EditCommand()
                "X,Y,Z:X,Y,Z) or the file of a closed mesh, in world coordinates. Away from the tools level 0 "
                "stays what it was, to the bit. --with the old pyramid undoes all."}) {
     declareOutput("the pyramid's file, .vdb, or a packed one, .iwz");
-    declareEdits();
-    options_.value(
-        "--level", "L", "0",
-        "tools are sampled on this level's lattice: their edges are as round as its surfaces are",
-        [this](const std::string& v) { how_.level = static_cast<int>(integer(v, 0, kMostSteps)); });
-    options_.value("--blend", "R", "sharp",
-                   "where a tool of --add or --cut meets the surface the edge becomes a fillet of radius R "
-                   "(world units)",
-                   [this](const std::string& v) { how_.blend = positive(v); });
-    options_.flag("--check", "make every step's mesh; exit code 4 where one is not closed and 2-manifold",
-                  how_.checkSteps);
+    choices_.declare(options_);
     declareJson();
     declareThreads();
     declareTalk();
-}
-
-void EditCommand::declareEdits() {
-    options_.values("--add", "TOOL", "the solid and the tool together",
-                    [this](const std::string& v) { edits_.push_back(EditAdd{editTool(v)}); });
-    options_.values("--cut", "TOOL", "the solid without the tool",
-                    [this](const std::string& v) { edits_.push_back(EditCut{editTool(v)}); });
-    options_.values("--move", "BOX",
-                    "what of the solid lies in the box is moved, with its details; by how much says --by",
-                    [this](const std::string& v) { edits_.push_back(EditMove{box(v)}); });
-    options_.values("--by", "X,Y,Z", "by how much the --move before it moves (world units)",
-                    [this](const std::string& v) { moveLast(v); });
-    options_.values(
-        "--with", "FILE",
-        "the level's control points as in FILE, a .vdb of isowave field that was changed; or, of a "
-        "pyramid, its level 0, which undoes edits",
-        [this](const std::string& v) { edits_.push_back(EditWith{place(v)}); });
-}
-
-void EditCommand::moveLast(const std::string& by) {
-    auto* move = edits_.empty() ? nullptr : std::get_if<EditMove>(&edits_.back());
-    if (!move) throw UsageError("stands behind a --move");
-    move->by = point(by);
 }
 
 void EditCommand::checkOutput() const {
@@ -78,7 +42,7 @@ void EditCommand::checkOutput() const {
         throw UsageError(
             "-o: a pyramid is a .vdb file, a packed one an .iwz; name it for example new.pyramid.vdb");
     std::vector<std::filesystem::path> files;
-    for (const Edit& edit : edits_) {
+    for (const Edit& edit : choices_.edits) {
         const EditTool* tool = nullptr;
         if (const auto* add = std::get_if<EditAdd>(&edit)) tool = &add->tool;
         if (const auto* cut = std::get_if<EditCut>(&edit)) tool = &cut->tool;
@@ -102,7 +66,8 @@ int EditCommand::run(Console& console) {
         tale.remarks.emplace_back(line);
         if (say) say(line);
     };
-    EditedPyramid edited = edit(Pyramid::open(arguments[0], 0, progress), edits_, how_, progress);
+    EditedPyramid edited =
+        edit(Pyramid::open(arguments[0], 0, progress), choices_.edits, choices_.how, progress);
     tale.report = std::move(edited.report);
     readyToTell(console, jsonOf(tale));
     edited.pyramid.save(*output_);
