@@ -44,6 +44,15 @@ namespace isowave::subdivision {
 using isowave::Polyline;
 using isowave::Vec3;
 
+// The points that a mesh, a curve or a relief of a level is written with.
+//   control   those that subdivision works on. Only they can be rebuilt from.
+//   limit     where subdivision without end, and without finer details, takes them: on the surface or curve that they
+//             stand for. For pictures and for measuring; control points may stand far from what they control.
+enum class Positions { control, limit };
+inline std::string_view name(Positions positions) {
+    return positions == Positions::limit ? "limit" : "control";
+}
+
 // ---- polygon meshes ----
 
 using Index = std::uint32_t;
@@ -102,6 +111,12 @@ ISOWAVE_EXPORT std::vector<std::string> meshVariantNames(std::string_view scheme
 // faces that the scheme does not take.
 ISOWAVE_EXPORT PolygonMesh subdivided(const PolygonMesh& mesh, std::string_view scheme, int levels,
                                       const Progress& progress = {});
+
+// Where the vertices of `mesh` end up when it is subdivided without end and without details: on the surface that it
+// controls. In the order of the mesh; exact at every valence, boundaries, creases, darts and pinned vertices included.
+// Butterfly goes through its points, so there they are the mesh's own. For looking at: a mesh with these points is no
+// base for details. Throws as subdivided() does.
+ISOWAVE_EXPORT std::vector<Vec3> limitPoints(const PolygonMesh& mesh, std::string_view scheme);
 
 inline constexpr int kAllLevels = -1;
 inline constexpr double kMeshRoundTrip = 1e-12;
@@ -205,7 +220,9 @@ struct DecompositionReport {
     std::size_t creases = 0, pinned = 0;  // of the base
     double diagonal = 0;                  // of the mesh
     double roundTrip = 0;                 // largest distance after reconstruction
-    std::vector<Level> levels;            // the base first
+    Positions positions =
+        Positions::control;     // of the base as it is written; all errors are of control positions
+    std::vector<Level> levels;  // the base first
 };
 // `mesh` is what `hierarchy` was made from.
 ISOWAVE_EXPORT DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const PolygonMesh& mesh,
@@ -214,8 +231,9 @@ ISOWAVE_EXPORT DecompositionReport reportDecomposition(const Hierarchy& hierarch
 struct RebuildOptions {
     std::vector<Vec3> moved = {};  // the base's points after an edit; empty: where they were
     Frames frames = Frames::global;
-    std::optional<double> threshold = {};  // details shorter than this are left out
-    std::optional<std::size_t> keep = {};  // or: only this many of the longest stay
+    std::optional<double> threshold = {};      // details shorter than this are left out
+    std::optional<std::size_t> keep = {};      // or: only this many of the longest stay
+    Positions positions = Positions::control;  // of the mesh
     bool shares = false;  // the errors of the longest 0, 1, 2, 5, 10, 20, 50 % of the details
 };
 struct RebuildReport {
@@ -223,7 +241,8 @@ struct RebuildReport {
     std::size_t vertices = 0, faces = 0;
     std::size_t details = 0, kept = 0;  // of those levels; not 0
     double diagonal = 0;
-    PointError error;  // what leaving details out has cost
+    Positions positions = Positions::control;  // of the mesh
+    PointError error;                          // what leaving details out has cost, at control positions
     struct Share {
         double share;  // of the details, the longest
         std::size_t kept;
@@ -282,6 +301,10 @@ class CurveTransform {
     ISOWAVE_EXPORT Polyline reconstruct(const CurveLevels& curve, int level = 0) const;
     // What P alone makes of level `from`: all finer details are taken for 0.
     ISOWAVE_EXPORT Polyline subdivided(const CurveLevels& curve, int from) const;
+    // The points of a level at their limit positions: on the curve that they control, open B-splines at the Greville
+    // abscissae, others as docs/subdivision.md says; of dlg the points themselves. Throws InputError when the scheme is a
+    // mask whose subdivisions do not converge, or the curve is open and has fewer points than the scheme needs.
+    ISOWAVE_EXPORT Polyline limit(const Polyline& curve) const;
 
   private:
     explicit CurveTransform(std::shared_ptr<const CurveFilters> filters) : filters_(std::move(filters)) {}
@@ -304,6 +327,7 @@ struct CurveReportOptions {
     std::optional<std::size_t> resample = {};  // this many points at equal steps first
     std::optional<double> threshold = {};      // details shorter than this become 0
     std::optional<std::size_t> keep = {};      // or: only this many of the longest stay
+    Positions positions = Positions::control;  // of the curves that are returned
     bool compare = false;                      // the L2 errors of dlg-trial, dlg-refined, dlg-optimal too
 };
 
@@ -321,7 +345,9 @@ struct CurveReport {
     std::string scheme;
     int levels = 0;
     std::vector<Curve> curves;
-    std::size_t tooShort = 0;  // curves that do not have so many levels
+    Positions positions = Positions::control;  // of the curves below; all errors are of control positions
+    std::size_t tooShort = 0;                  // curves that do not have so many levels
+    std::size_t withoutLimit = 0;              // open ones with too few points for limit positions: they stay
     std::vector<std::vector<Polyline>>
         atLevel;                        // atLevel[k]: every curve at level k, or at the coarsest it has
     std::vector<Polyline> smooth;       // P alone on the coarsest level of each
@@ -329,7 +355,7 @@ struct CurveReport {
 };
 
 // Takes curves apart as far as they go. Throws InputError when none of them has `levels` levels (and says how many
-// points are needed).
+// points are needed), and for limit positions of a mask that has none.
 ISOWAVE_EXPORT CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions& options);
 
 // ---- grids of heights ----
@@ -358,7 +384,8 @@ struct ReliefReportOptions {
     std::string scheme = "butterfly-3";
     ReliefLayout layout = ReliefLayout::Rows;
     int levels = 2;
-    bool compare = false;  // what the other schemes make of the relief without details
+    Positions positions = Positions::control;  // of the heights that are returned
+    bool compare = false;                      // what the other schemes make of the relief without details
 };
 
 // The relief at every level. Grids have the samples where they were: sample (r, c) of level k lies where (r 2^k, c 2^k) of
@@ -377,14 +404,18 @@ struct ReliefReport {
     };
     std::string scheme;
     std::vector<Level> levels;
-    double range[2] = {0, 0};                // of the values used
-    double rmsStep = 1;                      // between neighbours in a row of level 0; 1 where all are equal
-    double roundTrip = 0;                    // largest difference after reconstruction
+    double range[2] = {0, 0};  // of the values used
+    double rmsStep = 1;        // between neighbours in a row of level 0; 1 where all are equal
+    double roundTrip = 0;      // largest difference after reconstruction
+    // Of the heights of levels and of `suppressed`; errors, range and `reconstructed` are of control positions.
+    Positions positions = Positions::control;
+    Grid reconstructed;                      // level 0, from the coarsest level and all details
     Grid suppressed;                         // P alone from the coarsest level
     std::map<std::string, double> compared;  // suppressedRms of the coarsest level, by scheme
 };
 
-// Throws InputError for an unknown scheme and when the grid is too small for so many levels.
+// Throws InputError for an unknown scheme, when the grid is too small for so many levels, and for limit positions of a
+// loop-like scheme that does not converge.
 ISOWAVE_EXPORT ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options);
 
 // The pictures of a report, one after the other: level_K (grey by height), shade_K (lit from the upper left), details_K

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "isowave/error.h"
+#include "subdivision/curves/curve_limit.h"
 
 namespace isowave::subdivision {
 
@@ -443,6 +444,11 @@ Polyline CurveTransform::reconstruct(const CurveLevels& curve, int level) const 
 
 Polyline CurveTransform::subdivided(const CurveLevels& curve, int from) const {
     return subdivision::subdivided(curve, *filters_, from);
+}
+
+Polyline CurveTransform::limit(const Polyline& curve) const {
+    checkCurve(curve, *filters_);
+    return CurveLimit(filters_->scheme()).of(curve);
 }
 
 }  // namespace isowave::subdivision

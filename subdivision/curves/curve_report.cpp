@@ -7,6 +7,7 @@
 
 #include "isowave/error.h"
 #include "subdivision/curves/curve.h"
+#include "subdivision/curves/curve_limit.h"
 
 namespace isowave::subdivision {
 
@@ -81,6 +82,20 @@ void dropDetails(const Polyline& curve, CurveLevels& parts, const CurveFilters& 
     row.thresholdError = l2Distance(report.thresholded.back(), curve);
 }
 
+// All curves of the report at their limits. Those that have none stay, and are counted once.
+void moveToLimit(const CurveLimit& limit, CurveReport& report) {
+    const auto move = [&](std::vector<Polyline>& curves) {
+        for (Polyline& curve : curves)
+            if (limit.takes(curve)) curve = limit.of(curve);
+    };
+    const auto& coarsest = report.atLevel.back();
+    report.withoutLimit = static_cast<std::size_t>(std::count_if(
+        coarsest.begin(), coarsest.end(), [&](const Polyline& curve) { return !limit.takes(curve); }));
+    for (auto& curves : report.atLevel) move(curves);
+    move(report.smooth);
+    move(report.thresholded);
+}
+
 const Polyline& longest(const std::vector<Polyline>& curves) {
     return *std::max_element(curves.begin(), curves.end(),
                              [](const auto& a, const auto& b) { return a.size() < b.size(); });
@@ -97,6 +112,9 @@ CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions&
     report.scheme = schemeOf(options).name;
     report.levels = options.levels;
     report.atLevel.resize(static_cast<std::size_t>(std::max(0, options.levels)) + 1);
+    report.positions = options.positions;
+    std::optional<CurveLimit> limit;
+    if (options.positions == Positions::limit) limit.emplace(schemeOf(options));
     if (options.resample) resampleAll(curves, *options.resample);
     for (const Polyline& curve : curves) {
         const CurveFilters& filters = filtersFor(curve.closed);
@@ -115,6 +133,7 @@ CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions&
         const Polyline& most = longest(curves);
         decompose(most, filtersFor(most.closed), options.levels);
     }
+    if (limit) moveToLimit(*limit, report);
     return report;
 }
 

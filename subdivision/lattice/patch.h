@@ -56,6 +56,11 @@ class Patch {
     std::array<int, 6> distances(Node node) const { return distances(a_, b_, node); }
     // subdivided().distances(fine), without making that patch.
     std::array<int, 6> fineDistances(Node fine) const { return distances(2 * a_, 2 * b_, fine); }
+    // The step along side s of distances(): 0, 1 have x fixed, 2, 3 y, 4, 5 x + y.
+    static Node stepAlong(std::size_t side) {
+        if (side < 2) return {0, 1};
+        return side < 4 ? Node{1, 0} : Node{-1, 1};
+    }
     static constexpr int kFar = 1 << 28;
 
     // "parallelogram 8 x 4", "hexagon 5": for messages.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "subdivision/lattice/relief.h"
+#include "subdivision/lattice/surface_limit.h"
 
 namespace isowave::subdivision {
 
@@ -73,6 +75,18 @@ void measureHeights(const Grid& heights, ReliefReport& report) {
     report.rmsStep = rmsStep(heights);
 }
 
+// A field at the positions that were asked for.
+class Places {
+  public:
+    Places(const SurfaceScheme& scheme, Positions positions) {
+        if (positions == Positions::limit) limit_.emplace(scheme);
+    }
+    SurfaceField of(const SurfaceField& field) const { return limit_ ? limit_->of(field) : field; }
+
+  private:
+    std::optional<SurfaceLimit> limit_;
+};
+
 // A field as a picture of the grid's size at that level: without what pads it.
 class Pictures {
   public:
@@ -93,13 +107,13 @@ class Pictures {
 };
 
 ReliefReport::Level levelOf(const SurfaceLevels& parts, SurfaceFilters& filters, const SurfaceField& field,
-                            const Pictures& pictures, int k) {
+                            const Pictures& pictures, const Places& places, int k) {
     const SurfaceField level = reconstruct(parts, filters, k);
     ReliefReport::Level row;
     row.patch = level.patch.name();
     row.nodes = level.patch.size();
     row.suppressedRms = rms(pictures.difference(subdivided(parts, filters, k), field));
-    row.heights = pictures.of(level, k);
+    row.heights = pictures.of(places.of(level), k);
     if (k == parts.levels()) return row;
     const auto& details = parts.details[static_cast<std::size_t>(k)];
     row.detailRms = rms(details);
@@ -117,13 +131,17 @@ ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) 
     const SurfaceField field = reliefField(grid, options.layout, options.levels);
     const SurfaceLevels parts = decompose(field, filters, options.levels);
     const Pictures pictures(grid, options.layout);
+    const Places places(filters.scheme(), options.positions);
     ReliefReport report;
     report.scheme = filters.scheme().name;
+    report.positions = options.positions;
     measureHeights(lastChannel(pictures.of(field)), report);
     for (int k = 0; k <= options.levels; ++k)
-        report.levels.push_back(levelOf(parts, filters, field, pictures, k));
-    report.roundTrip = largest(difference(reconstruct(parts, filters, 0).values, field.values));
-    report.suppressed = pictures.of(subdivided(parts, filters, options.levels));
+        report.levels.push_back(levelOf(parts, filters, field, pictures, places, k));
+    const SurfaceField restored = reconstruct(parts, filters, 0);
+    report.roundTrip = largest(difference(restored.values, field.values));
+    report.reconstructed = pictures.of(restored);
+    report.suppressed = pictures.of(places.of(subdivided(parts, filters, options.levels)));
     if (!options.compare) return report;
     for (const auto& name : surfaceSchemeNames()) {
         SurfaceFilters others(surfaceScheme(name));

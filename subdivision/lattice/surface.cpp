@@ -44,19 +44,13 @@ struct SidePlace {
     int nodes() const { return before + after + 1; }
 };
 
-// Sides 0, 1 have x fixed, 2, 3 y, 4, 5 x + y.
-Node directionOfSide(int side) {
-    if (side < 2) return {0, 1};
-    return side < 4 ? Node{1, 0} : Node{-1, 1};
-}
-
 // A side may be as long as a picture; nothing farther than this is ever asked for.
 constexpr int kFarAlongSide = 64;
 
 SidePlace placeOnSide(const Patch& patch, Node node) {
     const int side = commonSide(patch, {node});
     assert(side >= 0);
-    SidePlace place{directionOfSide(side)};
+    SidePlace place{Patch::stepAlong(static_cast<std::size_t>(side))};
     while (place.before < kFarAlongSide && patch.contains(node - (place.before + 1) * place.step))
         ++place.before;
     while (place.after < kFarAlongSide && patch.contains(node + (place.after + 1) * place.step))
@@ -265,7 +259,7 @@ Diagram surfaceRowOfP(const SurfaceScheme& scheme, const Patch& coarse, Node fin
     const Edge edge = edgeOf(fine);
     if (const int side = commonSide(coarse, {edge.u, edge.v}); side >= 0) {
         // An end of the edge may be a corner, on two sides: take the row from where only this side is meant.
-        const Node step = directionOfSide(side);
+        const Node step = Patch::stepAlong(side);
         const Node first = coarse.contains(edge.u) && edge.v - edge.u == step ? edge.u : edge.v;
         SidePlace place{step};
         while (place.before < kFarAlongSide && coarse.contains(first - (place.before + 1) * step))

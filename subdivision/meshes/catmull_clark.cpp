@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace isowave::subdivision {
 namespace {
@@ -225,6 +226,65 @@ std::vector<Vec3> CatmullClarkStep::subdivide(std::span<const Vec3> coarse) cons
     for (Index v = 0; v < adjacency_.vertices(); ++v)
         fine[v] = mask(v).mu * coarse[v] + aroundVertex(v, fine);
     return fine;
+}
+
+// ---- limit ----
+
+namespace {
+
+// b_i of a dart with n edges. REQUIRES: 0 <= i <= n. The sharp edge, 0 and n, counts as 0 beside its neighbours.
+double dartEdge(int i, int n) {
+    const double r = (7 - std::sqrt(45.0)) / 2;
+    return 4 * (1 - (std::pow(r, i) + std::pow(r, n - i)) / (1 + std::pow(r, n)));
+}
+
+}  // namespace
+
+std::vector<Vec3> CatmullClarkStep::limit(std::span<const Vec3> fine) const {
+    assert(fine.size() == fineSize());
+    std::vector<Vec3> points(coarseSize());
+    for (Index v = 0; v < points.size(); ++v)
+        points[v] = kind_[v] == Kind::corner  ? fine[v]
+                    : kind_[v] == Kind::curve ? curveLimit(v, fine)
+                                              : smoothLimit(v, fine);
+    return points;
+}
+
+Vec3 CatmullClarkStep::curveLimit(Index v, std::span<const Vec3> fine) const {
+    Vec3 sum = 4.0 * fine[v];
+    forStar(
+        v, [&](Index e) { sum += sharp_[e] ? fine[edgePoint(e)] : Vec3{}; }, [](Index, int) {});
+    return (1.0 / 6) * sum;
+}
+
+Vec3 CatmullClarkStep::smoothLimit(Index v, std::span<const Vec3> fine) const {
+    const double n = valence_[v];
+    Vec3 sum = n * n * fine[v];
+    Index sharp = kNone;
+    adjacency_.around(v, [&](Index c) {
+        sum += 4.0 * fine[edgePoint(adjacency_.edge(c))] + fine[facePoint(adjacency_.face(c))];
+        if (sharp_[adjacency_.edge(c)]) sharp = c;
+    });
+    return sharp == kNone ? (1 / (n * (n + 5))) * sum : dartLimit(v, sharp, fine);
+}
+
+// `sharp`: the halfedge from v along the sharp edge.
+Vec3 CatmullClarkStep::dartLimit(Index v, Index sharp, std::span<const Vec3> fine) const {
+    const int n = static_cast<int>(valence_[v]);
+    double weights = 0;
+    Vec3 sum;
+    const auto add = [&](double weight, Index at) {
+        weights += weight;
+        sum += weight * fine[at];
+    };
+    add(double(n) * n, v);
+    Index c = sharp;
+    for (int i = 0; i < n; ++i, c = adjacency_.nextAround(c)) {
+        const double b = dartEdge(i, n), next = dartEdge(i + 1, n);
+        add(i == 0 ? (10 + next) / 3 : b, edgePoint(adjacency_.edge(c)));
+        add(1.0 / 3 + (b + next) / 12, facePoint(adjacency_.face(c)));
+    }
+    return (1 / weights) * sum;
 }
 
 // ---- A without refinement ----

@@ -33,6 +33,17 @@
 //   and need not be stored: the slots hold d_i - s_i t, which determine the root's. With empty slots all d_i are s_i t,
 //   small and even, where a d of the root alone would be a spike.
 //
+// Limit. Subdivision maps the star of a vertex, v, e_i and f_i (i = 0 .. n-1, f_i between e_i and e_i+1), to that of the
+// same vertex one level finer, where all faces are quads. With the left eigenvector (a, b_i, c_i) of the eigenvalue 1,
+//   limit = (a v' + sum(b_i e_i) + sum(c_i f_i)) / (a + sum(b_i) + sum(c_i)).
+//   smooth   a = n^2, b = 4, c = 1: Halstead, Kass and DeRose (1993)
+//   dart     a smooth vertex at which one sharp edge, e_0, ends. Columns e_i and f_i of x S = x, c eliminated, leave
+//              7 b_i = 20 + b_i-1 + b_i+1  (0 < i < n, 0 in the place of b_0 and b_n),
+//            so b_i = 4 (1 - (r^i + r^(n-i))/(1 + r^n)), r = (7 - sqrt 45)/2,
+//            b_0 = (10 + b_1)/3, c_i = 1/3 + (b_i + b_i+1)/12 with 0 for the sharp edge
+//   curve    (4 v' + e + e)/6 along the two sharp edges
+//   corner   v
+//
 // Refinement, O(11). Moving v by delta moves v~ by r delta, e~ by s delta, f~ by t delta; the delta that makes the
 // details around v least, times r for what its neighbours do at the same time:
 //   delta = r sum((r alpha + s) d) / (r^2 + sum s^2 + sum t^2),     r d_v in place of r alpha d where mu = 0
@@ -62,6 +73,7 @@ class CatmullClarkStep final : public SubdivisionStep {
 
     PolygonMesh fineMesh() const override;
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override;
+    std::vector<Vec3> limit(std::span<const Vec3> fine) const override;
     Parts decompose(std::span<const Vec3> fine) const override;
     std::vector<Vec3> allDetails(std::span<const Vec3> coarse, std::span<const Vec3> stored) const override;
     std::vector<Vec3> shift(std::span<const Vec3> allDetails) const override;
@@ -107,6 +119,9 @@ class CatmullClarkStep final : public SubdivisionStep {
     template <class Edge, class Face>
     void forStar(Index v, Edge edge, Face face) const;
     Vec3 aroundVertex(Index v, std::span<const Vec3> fine) const;
+    Vec3 curveLimit(Index v, std::span<const Vec3> fine) const;
+    Vec3 smoothLimit(Index v, std::span<const Vec3> fine) const;
+    Vec3 dartLimit(Index v, Index sharp, std::span<const Vec3> fine) const;
     Vec3 sumOfEnds(Index e, std::span<const Vec3> fine) const;
     void solveTree(const Tree& tree, std::span<const Vec3> fine, std::vector<Vec3>& coarse) const;
     std::vector<Vec3> trial(std::span<const Vec3> fine) const;

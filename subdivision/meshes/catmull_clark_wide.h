@@ -26,6 +26,7 @@ class WideCatmullClarkStep final : public SubdivisionStep {
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override {
         return trial_->subdivide(coarse);
     }
+    std::vector<Vec3> limit(std::span<const Vec3> fine) const override { return trial_->limit(fine); }
     Parts decompose(std::span<const Vec3> fine) const override;
     std::vector<Vec3> allDetails(std::span<const Vec3> coarse, std::span<const Vec3> stored) const override {
         return trial_->allDetails(coarse, stored);

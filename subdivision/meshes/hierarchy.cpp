@@ -200,6 +200,17 @@ PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int le
     return result;
 }
 
+std::vector<Vec3> limitPoints(const PolygonMesh& mesh, const MeshScheme& scheme) {
+    if (const auto lines = defects(mesh); !lines.empty()) throw InputError(lines.front());
+    if (4 * std::uint64_t{mesh.corners.size()} >= kNone)
+        throw InputError(
+            fmt::format("has {} corners of faces, too many for limit positions; take it at a "
+                        "coarser level",
+                        mesh.corners.size()));
+    const auto step = scheme.step(mesh, scheme.variants.front());
+    return step->limit(step->subdivide(mesh.points));
+}
+
 Hierarchy decompose(const PolygonMesh& mesh, std::string_view scheme, const DecomposeOptions& options,
                     const Progress& progress) {
     return decompose(mesh, meshScheme(scheme), options, progress);
@@ -208,6 +219,10 @@ Hierarchy decompose(const PolygonMesh& mesh, std::string_view scheme, const Deco
 PolygonMesh subdivided(const PolygonMesh& mesh, std::string_view scheme, int levels,
                        const Progress& progress) {
     return subdivided(mesh, meshScheme(scheme), levels, progress);
+}
+
+std::vector<Vec3> limitPoints(const PolygonMesh& mesh, std::string_view scheme) {
+    return limitPoints(mesh, meshScheme(scheme));
 }
 
 std::vector<std::string> meshSchemeNames() {

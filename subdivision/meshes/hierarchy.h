@@ -31,4 +31,6 @@ PolygonMesh rebuilt(const Hierarchy& hierarchy, int steps, const Progress& progr
 PolygonMesh subdivided(const PolygonMesh& mesh, const MeshScheme& scheme, int levels,
                        const Progress& progress = {});
 
+std::vector<Vec3> limitPoints(const PolygonMesh& mesh, const MeshScheme& scheme);
+
 }  // namespace isowave::subdivision

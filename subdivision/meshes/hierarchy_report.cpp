@@ -79,6 +79,9 @@ Rebuilt rebuild(Hierarchy hierarchy, const RebuildOptions& options, const Progre
         report.error = pointError(part.points, result.mesh.points);
         result.mesh = std::move(part);
     }
+    report.positions = options.positions;
+    if (options.positions == Positions::limit)
+        result.mesh.points = limitPoints(result.mesh, hierarchy.scheme);
     report.kept = nonzeroDetailCount(hierarchy);
     report.vertices = result.mesh.vertexCount();
     report.faces = result.mesh.faceCount();
@@ -92,6 +95,13 @@ std::optional<MovedVertex> firstMovedVertex(const PolygonMesh& base, const Polyg
         if (distance > allowed) return MovedVertex{v, distance};
     }
     return std::nullopt;
+}
+
+bool isBaseAtLimit(const Hierarchy& hierarchy, const PolygonMesh& mesh) {
+    if (!firstMovedVertex(hierarchy.base, mesh)) return false;
+    PolygonMesh limit = hierarchy.base;
+    limit.points = limitPoints(hierarchy.base, hierarchy.scheme);
+    return !firstMovedVertex(limit, mesh);
 }
 
 }  // namespace isowave::subdivision

@@ -25,4 +25,8 @@ struct MovedVertex {
 };
 std::optional<MovedVertex> firstMovedVertex(const PolygonMesh& base, const PolygonMesh& mesh);
 
+// `mesh` has the limit positions of the base, and they are not its own points: details do not belong on it.
+// REQUIRES: requireSameConnectivity(base, mesh).
+bool isBaseAtLimit(const Hierarchy& hierarchy, const PolygonMesh& mesh);
+
 }  // namespace isowave::subdivision

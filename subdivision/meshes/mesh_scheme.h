@@ -37,6 +37,10 @@ class SubdivisionStep {
 
     // P c. REQUIRES: coarseSize() points.
     virtual std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const = 0;
+    // Where subdivision without end takes the coarse vertices, from the points of one step, P c: the left eigenvector of
+    // the eigenvalue 1 of the matrix that takes the fine points around a vertex to those of the next step.
+    // REQUIRES: fineSize() points.
+    virtual std::vector<Vec3> limit(std::span<const Vec3> fine) const = 0;
 
     struct Parts {
         std::vector<Vec3> coarse, stored;

@@ -372,6 +372,32 @@ std::vector<Vec3> TriangleStep::subdivide(std::span<const Vec3> coarse) const {
     return fine;
 }
 
+void TriangleStep::limitRow(Index v, Taps& row) const {
+    row.clear();
+    if (family_ == Family::Butterfly || place(v) == Place::Corner) {
+        row.push_back({v, 1});
+    } else if (place(v) == Place::Boundary) {
+        row.push_back({v, 4.0 / 6});
+        row.push_back({edgeNode(boundaryAfter(v)), 1.0 / 6});
+        row.push_back({edgeNode(boundaryBefore(v)), 1.0 / 6});
+    } else {
+        const double omega = 3 / (8 * loopBeta(valence_[v])), all = omega + valence_[v];
+        row.push_back({v, omega / all});
+        coarse_.around(v, [&](Index h) { row.push_back({edgeNode(h), 1 / all}); });
+    }
+}
+
+std::vector<Vec3> TriangleStep::limit(std::span<const Vec3> fine) const {
+    assert(fine.size() == fineSize());
+    std::vector<Vec3> points(coarseSize());
+    Taps row;
+    for (Index v = 0; v < points.size(); ++v) {
+        limitRow(v, row);
+        points[v] = sum(row, fine);
+    }
+    return points;
+}
+
 SubdivisionStep::Parts TriangleStep::decompose(std::span<const Vec3> fine) const {
     assert(fine.size() == fineSize());
     Parts parts{std::vector<Vec3>(coarseSize()), std::vector<Vec3>(coarse_.edges())};

@@ -22,6 +22,10 @@
 //   beyond the boundary, across (a, c) of the triangle (a, b, c), is a + c - b, as in surface.h.
 //   A corner is a boundary vertex with a single triangle, or a pinned vertex; the boundary is cut there.
 //
+// Limit: the left eigenvector of the eigenvalue 1, over the points of one step.
+//   Loop, inside: with w = 3/(8 b), (w v + sum e)/(w + n): the column of e says x_e = b x_v + (3/8 + 2/8) x_e.
+//   Loop, boundary: (4 v + e + e)/6. Corners, and Butterfly everywhere: v.
+//
 // A0, a left inverse of P that reads one vertex node, exists everywhere, so P is injective on every mesh:
 //   Butterfly: the vertex node.   Loop, inside: the n edge nodes e of v sum to (3/8 n) v + (3/8 + 2/8) (neighbours), so
 //       v = (f_v - (8/5) b sum e) / (1 - (8/5) n b)
@@ -64,6 +68,7 @@ class TriangleStep final : public SubdivisionStep {
 
     PolygonMesh fineMesh() const override;
     std::vector<Vec3> subdivide(std::span<const Vec3> coarse) const override;
+    std::vector<Vec3> limit(std::span<const Vec3> fine) const override;
     Parts decompose(std::span<const Vec3> fine) const override;
     std::vector<Vec3> allDetails(std::span<const Vec3> coarse, std::span<const Vec3> stored) const override;
     std::vector<Vec3> shift(std::span<const Vec3> allDetails) const override;
@@ -89,6 +94,7 @@ class TriangleStep final : public SubdivisionStep {
     Index boundaryAfter(Index v) const;
     Index boundaryBefore(Index v) const;
 
+    void limitRow(Index v, Taps& row) const;  // over fine vertices
     void vertexRowOfP(Index v, Taps& row) const;
     void butterflyEdge(Index h, Taps& row) const;
     void addStencilAround(Index h, double factor, Taps& row) const;

@@ -94,6 +94,50 @@ TEST(Reverse, TakesACarApartAndRebuildPutsItBack) {
                 HasSubstr("without the others rms"));
 }
 
+// The masks are tested in the library. A corner (1, 1, 1) of a cube has 9 v' = (5, 5, 5), sum(e) = (3/2, 3/2, 3/2) and
+// sum(f) = (1, 1, 1), so its limit (9 v' + 4 sum(e) + sum(f))/24 is half of it.
+TEST(MeshHierarchyCommands, WriteLimitPositionsThatRebuildDoesNotTake) {
+    const Folder folder;
+    const std::string cube = in(folder, "cube.obj"), limit = in(folder, "limit.obj"),
+                      fine = in(folder, "fine.obj"), details = in(folder, "fine.details"),
+                      out = in(folder, "out.obj");
+    std::ofstream(cube)
+        << "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+           "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    const auto report =
+        succeed({"subdivide", cube, "--depth", "0", "--limit", "-o", limit, "--json", "-"}).json();
+    EXPECT_EQ(report["positions"], "limit");
+    const Obj before = readObj(cube), after = readObj(limit);
+    ASSERT_EQ(before.points.size(), after.points.size());
+    for (std::size_t k = 0; k < after.points.size(); ++k)
+        EXPECT_NEAR(after.points[k], before.points[k] / 2, 1e-15);
+
+    succeed({"subdivide", kCages + "catmark_torus.obj", "--depth", "2", "-o", in(folder, "smooth.obj")});
+    roughen(folder / "smooth.obj", fine);
+    const std::vector<std::string> reverse{"reverse", fine,        "--depth", "1",      "--limit", "-o",
+                                           limit,     "--details", details,   "--json", "-"};
+    EXPECT_EQ(succeed(reverse).json()["positions"], "limit");
+    succeed({"reverse", fine, "--depth", "1", "-o", in(folder, "base.obj"), "--quiet"});
+    EXPECT_GT(largestDifference(readObj(limit), readObj(folder / "base.obj")), 1e-3);
+    for (const auto& arguments : std::vector<std::vector<std::string>>{
+             {"rebuild", limit, "--details", details, "-o", out},
+             {"rebuild", in(folder, "base.obj"), "--edited", limit, "--details", details, "-o", out}}) {
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, 3);
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_THAT(result.err, HasSubstr("limit.obj: its vertices are at their limit positions"));
+    }
+    // The details are those of control positions, and what they rebuild may be written at its limit.
+    const std::vector<std::string> rebuild{"rebuild", in(folder, "base.obj"), "--details", details, "-o",
+                                           out};
+    succeed(rebuild);
+    EXPECT_LT(largestDifference(readObj(fine), readObj(out)), 1e-12);
+    auto atLimit = rebuild;
+    atLimit.insert(atLimit.end(), {"--depth", "0", "--limit", "--json", "-"});
+    EXPECT_EQ(succeed(atLimit).json()["positions"], "limit");
+    EXPECT_LT(largestDifference(readObj(out), readObj(limit)), 1e-14);
+}
+
 TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
     const Folder folder;
     const std::string car = kCages + "catmark_car.obj", torus = kCages + "catmark_torus.obj";

@@ -113,6 +113,26 @@ TEST(Relief, OfATerrainIsWritten) {
         EXPECT_TRUE(fs::exists(folder / "r" / name)) << name;
 }
 
+TEST(SubdivisionCommands, WriteLimitPositions) {
+    const Folder folder;
+    const auto terrain = (kData / "terrain" / "jacksboro.npy").string(),
+               coast = (kData / "coast" / "iceland.txt").string();
+    const auto written = [&](std::vector<std::string> arguments, const char* name) {
+        arguments.insert(arguments.end(), {"--depth", "1", "--json", "-", "-o", (folder / name).string()});
+        return succeed(arguments).json()["positions"];
+    };
+    EXPECT_EQ(written({"relief", terrain, "--scheme", "loop-1"}, "control"), "control");
+    EXPECT_EQ(written({"relief", terrain, "--scheme", "loop-1", "--limit"}, "limit"), "limit");
+    EXPECT_EQ(written({"curve-levels", coast, "--scheme", "cubic-7"}, "control"), "control");
+    EXPECT_EQ(written({"curve-levels", coast, "--scheme", "cubic-7", "--limit"}, "limit"), "limit");
+    const auto same = [&](const char* name) {
+        return contentOf(folder / "control" / name) == contentOf(folder / "limit" / name);
+    };
+    for (const char* name : {"level_0.npy", "level_1.npy", "suppressed.npy", "level_0.txt", "level_1.txt"})
+        EXPECT_FALSE(same(name)) << name;
+    EXPECT_TRUE(same("reconstructed.npy"));
+}
+
 TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
     const Folder folder;
     const auto out = (folder / "out").string(), terrain = (kData / "terrain" / "jacksboro.npy").string(),
@@ -137,6 +157,12 @@ TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
          "has 3 points; 6 levels of an open dlg-refined curve need at least 34"},
         {{"curve-levels", (folder / "nan.txt").string(), "-o", out}, 3, "line 2"},
         {{"curve-levels", coast, "-o", out, "--scheme", "best"}, 2, "dlg-trial, dlg-refined, dlg-optimal"},
+        {{"curve-levels", coast, "-o", out, "--mask", "2 1 -1", "--limit"},
+         2,
+         "--limit: 'mask': has no limit positions"},
+        {{"relief", terrain, "-o", out, "--scheme", "loop-like:1/2,0", "--limit"},
+         2,
+         "--limit: 'loop-like:1/2,0': has no limit positions"},
         {{"curve-levels", coast, "-o", out, "--width", "7"}, 2, "--mask"},
         {{"curve-levels", (folder / "none.svg").string(), "-o", out}, 3, "cannot be opened"},
         {{"relief", terrain, "-o", out, "--scheme", "litke"}, 2, "loop-like:ALPHA,GAMMA"},

@@ -64,6 +64,8 @@ std::string comparisonText(const CurveReport& report) {
 std::string textOf(const CurveReport& report) {
     std::string out = fmt::format("{}, {} levels, {} curve{}\n", report.scheme, report.levels,
                                   report.curves.size(), report.curves.size() == 1 ? "" : "s");
+    if (report.positions == subdivision::Positions::limit)
+        out += "points are written at their limit positions\n";
     const std::size_t shown = std::min(report.curves.size(), kMostShown);
     for (std::size_t c = 0; c < shown; ++c) out += levelsText(report.curves[c], c + 1);
     if (shown < report.curves.size())
@@ -75,7 +77,10 @@ std::string textOf(const CurveReport& report) {
 namespace {
 
 Json treeOf(const CurveReport& report) {
-    Json j = {{"version", 1}, {"scheme", report.scheme}, {"levels", report.levels}};
+    Json j = {{"version", 1},
+              {"scheme", report.scheme},
+              {"levels", report.levels},
+              {"positions", name(report.positions)}};
     auto curves = Json::array();
     for (const auto& curve : report.curves) {
         Json one = {{"dimension", curve.dimension},     {"closed", curve.closed},
@@ -95,9 +100,16 @@ Json treeOf(const CurveReport& report) {
 std::string jsonOf(const CurveReport& report) { return dumped(treeOf(report), 1); }
 
 std::vector<std::string> remarks(const CurveReport& report) {
-    if (report.tooShort == 0) return {};
-    return {fmt::format("{} of {} curves are too short for {} levels and stay at the coarsest they have",
-                        report.tooShort, report.curves.size(), report.levels)};
+    std::vector<std::string> lines;
+    if (report.tooShort > 0)
+        lines.push_back(
+            fmt::format("{} of {} curves are too short for {} levels and stay at the coarsest they have",
+                        report.tooShort, report.curves.size(), report.levels));
+    if (report.withoutLimit > 0)
+        lines.push_back(
+            fmt::format("{} of {} curves have too few points for limit positions and stay as they are",
+                        report.withoutLimit, report.curves.size()));
+    return lines;
 }
 
 }  // namespace isowave::tools

@@ -13,7 +13,7 @@ namespace isowave::tools {
 std::string textOf(const subdivision::CurveReport& report);
 std::string jsonOf(const subdivision::CurveReport& report);
 
-// Curves that are too short for the levels that were asked for: a line, or nothing.
+// Curves that are too short for the levels, or for the limit positions, that were asked for: a line each, or nothing.
 std::vector<std::string> remarks(const subdivision::CurveReport& report);
 
 }  // namespace isowave::tools

@@ -6,6 +6,7 @@ namespace isowave::tools {
 
 using subdivision::DecompositionReport;
 using subdivision::PointError;
+using subdivision::Positions;
 using subdivision::RebuildReport;
 
 namespace {
@@ -18,6 +19,10 @@ std::string relative(double value, double diagonal) {
                         : fmt::format("{:.3g}", value);
 }
 
+std::string atPositions(Positions positions) {
+    return positions == Positions::limit ? ", at limit positions" : "";
+}
+
 }  // namespace
 
 std::string textOf(const DecompositionReport& report) {
@@ -25,6 +30,7 @@ std::string textOf(const DecompositionReport& report) {
         "{}, {}; creases {}, marked corners {}; round trip {:.1e} of the diagonal {:.6g}\n\n", report.scheme,
         report.variant, report.creases, report.pinned,
         report.diagonal > 0 ? report.roundTrip / report.diagonal : report.roundTrip, report.diagonal);
+    if (report.positions == Positions::limit) out += "the base is written at its limit positions\n\n";
     out +=
         "subdivisions   vertices      faces   details to the next: rms   largest   to the finest without "
         "details: rms\n";
@@ -49,7 +55,8 @@ Json treeOf(const DecompositionReport& report) {
               {"creases", report.creases},
               {"pinned", report.pinned},
               {"diagonal", report.diagonal},
-              {"round_trip", report.roundTrip}};
+              {"round_trip", report.roundTrip},
+              {"positions", name(report.positions)}};
     auto levels = Json::array();
     for (const auto& level : report.levels) {
         levels.push_back({{"vertices", level.vertices},
@@ -75,7 +82,7 @@ std::string textOf(const RebuildReport& report) {
                            relative(report.error.rms, report.diagonal),
                            relative(report.error.largest, report.diagonal));
     }
-    out += "\n";
+    out += atPositions(report.positions) + "\n";
     if (report.shares.empty()) return out;
     out += "\nlongest details      kept   error: rms              largest\n";
     for (const auto& share : report.shares) {
@@ -96,6 +103,7 @@ Json treeOf(const RebuildReport& report) {
               {"details", report.details},
               {"kept", report.kept},
               {"diagonal", report.diagonal},
+              {"positions", name(report.positions)},
               {"error", errorJson(report.error)}};
     if (!report.shares.empty()) {
         auto shares = Json::array();
@@ -112,8 +120,9 @@ Json treeOf(const RebuildReport& report) {
 std::string jsonOf(const RebuildReport& report) { return dumped(treeOf(report), 1); }
 
 std::string textOf(const SubdivisionReport& report) {
-    return fmt::format("{}, {} level{}: {} vertices, {} faces\n", report.scheme, report.levels,
-                       report.levels == 1 ? "" : "s", report.vertices, report.faces);
+    return fmt::format("{}, {} level{}: {} vertices, {} faces{}\n", report.scheme, report.levels,
+                       report.levels == 1 ? "" : "s", report.vertices, report.faces,
+                       atPositions(report.positions));
 }
 
 namespace {
@@ -123,6 +132,7 @@ Json treeOf(const SubdivisionReport& report) {
             {"scheme", report.scheme},
             {"levels", report.levels},
             {"creases", report.creases},
+            {"positions", name(report.positions)},
             {"vertices", report.vertices},
             {"faces", report.faces}};
 }

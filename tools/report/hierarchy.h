@@ -20,6 +20,7 @@ struct SubdivisionReport {
     int levels = 0;
     std::size_t creases = 0;              // of the mesh that was subdivided
     std::size_t vertices = 0, faces = 0;  // of the result
+    subdivision::Positions positions = subdivision::Positions::control;
 };
 std::string textOf(const SubdivisionReport& report);
 std::string jsonOf(const SubdivisionReport& report);

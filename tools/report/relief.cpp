@@ -9,6 +9,8 @@ using subdivision::ReliefReport;
 std::string textOf(const ReliefReport& report) {
     std::string out = fmt::format("{}, values {:.6g} to {:.6g}, round trip {:.1e}\n\n", report.scheme,
                                   report.range[0], report.range[1], report.roundTrip);
+    if (report.positions == subdivision::Positions::limit)
+        out += "levels are written at their limit positions\n\n";
     out += "level      nodes   details: rms    largest   without finer details: rms   patch\n";
     for (std::size_t k = 0; k < report.levels.size(); ++k) {
         const auto& level = report.levels[k];
@@ -32,7 +34,8 @@ Json treeOf(const ReliefReport& report) {
     Json j = {{"version", 1},
               {"scheme", report.scheme},
               {"range", {report.range[0], report.range[1]}},
-              {"round_trip", report.roundTrip}};
+              {"round_trip", report.roundTrip},
+              {"positions", name(report.positions)}};
     auto levels = Json::array();
     for (const auto& level : report.levels) {
         levels.push_back({{"patch", level.patch},

@@ -6,6 +6,7 @@
 #include "isowave/error.h"
 #include "isowave/subdivision.h"
 #include "subdivision/curves/curve_files.h"
+#include "subdivision/curves/curve_limit.h"
 #include "subdivision/curves/curve_schemes.h"
 #include "tools/commands.h"
 #include "tools/console.h"
@@ -38,11 +39,13 @@ class CurveLevels : public Command {
     int run(Console& console) override;
 
   private:
+    void requireLimit() const;
     CurveReport reported(const CurveFile& file) const;
 
     CurveReportOptions report_;
     std::optional<std::string> scheme_, mask_;
     std::optional<int> width_;
+    bool limit_ = false;
 };
 
 CurveLevels::CurveLevels()
@@ -71,8 +74,18 @@ CurveLevels::CurveLevels()
     options_.value(
         "--keep", "N", "", "keep only the N longest details of each curve, into thresholded",
         [this](const std::string& v) { report_.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); });
+    options_.flag("--limit",
+                  "write the points of every curve at their limit positions, on the curve that they control",
+                  limit_);
     options_.flag("--compare-schemes", "compare the schemes' errors too", report_.compare);
     declareTalk();
+}
+
+// A mask without limit positions is not the file's fault.
+void CurveLevels::requireLimit() const {
+    if (!limit_ || !mask_) return;
+    const CurveScheme scheme = asked("--mask", [&] { return maskScheme(*mask_, width_.value_or(0)); });
+    asked("--limit", [&] { return CurveLimit(scheme); });
 }
 
 CurveReport CurveLevels::reported(const CurveFile& file) const {
@@ -80,6 +93,7 @@ CurveReport CurveLevels::reported(const CurveFile& file) const {
     options.scheme = scheme_.value_or(options.scheme);
     options.mask = mask_.value_or("");
     options.width = width_.value_or(0);
+    options.positions = positionsOf(limit_);
     try {
         return reportCurves(file.curves(), options);
     } catch (const InputError& error) {
@@ -92,6 +106,7 @@ int CurveLevels::run(Console& console) {
     if (width_ && !mask_) throw UsageError("--width: belongs to --mask; write --scheme cubic-7 otherwise");
     if (scheme_)
         asked("--scheme", [&] { return curveScheme(*scheme_); });  // a wrong name is not the file's fault
+    requireLimit();
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     openJson();

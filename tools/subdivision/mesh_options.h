@@ -20,6 +20,10 @@ subdivision::PolygonMesh readAndRemark(const std::filesystem::path& path, Consol
 const subdivision::MeshScheme& schemeWanted(const std::string& name);
 std::string_view variantWanted(const subdivision::MeshScheme& scheme, const std::string& name);
 void declareCrease(OptionList& options, std::optional<double>& angle);  // degrees
+// What --limit asks for.
+inline subdivision::Positions positionsOf(bool limit) {
+    return limit ? subdivision::Positions::limit : subdivision::Positions::control;
+}
 // Throws UsageError for an angle with a scheme that has no creases.
 void refuseCrease(const std::optional<double>& angle, std::string_view scheme);
 

@@ -26,6 +26,10 @@ PolygonMesh readLikeBase(const std::filesystem::path& path, const Hierarchy& hie
     } catch (const InputError& error) {
         throw InputError(path.string(), error.what());
     }
+    if (isBaseAtLimit(hierarchy, mesh))
+        throw InputError(path.string(),
+                         "its vertices are at their limit positions (reverse --limit), which are for looking "
+                         "at; give the base as reverse writes it without --limit");
     return mesh;
 }
 
@@ -56,7 +60,7 @@ class Rebuild : public Command {
     std::optional<Frames> frames_;
     std::optional<double> threshold_;
     std::optional<std::size_t> keep_;
-    bool errorTable_ = false;
+    bool errorTable_ = false, limit_ = false;
 };
 
 Rebuild::Rebuild()
@@ -82,6 +86,11 @@ Rebuild::Rebuild()
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--error-table", "the error that is left with the longest 0 to 50 % of the details",
                   errorTable_);
+    options_.flag(
+        "--limit",
+        "write the mesh at its limit positions, on the surface that it controls: for pictures; BASE "
+        "and --edited are control positions",
+        limit_);
     declareTalk();
 }
 
@@ -98,6 +107,7 @@ RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
     options.frames = frames_.value_or(options.frames);
     options.threshold = threshold_;
     options.keep = keep_;
+    options.positions = positionsOf(limit_);
     options.shares = errorTable_;
     return options;
 }

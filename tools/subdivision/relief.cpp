@@ -7,6 +7,7 @@
 #include "isowave/subdivision.h"
 #include "subdivision/lattice/grid_files.h"
 #include "subdivision/lattice/surface.h"
+#include "subdivision/lattice/surface_limit.h"
 #include "tools/commands.h"
 #include "tools/console.h"
 #include "tools/option_values.h"
@@ -24,7 +25,7 @@ std::map<std::string, std::string> filesOf(const ReliefReport& report) {
     std::map<std::string, std::string> files;
     for (std::size_t k = 0; k < report.levels.size(); ++k)
         files[fmt::format("level_{}.npy", k)] = npyBytes(report.levels[k].heights);
-    files["reconstructed.npy"] = files["level_0.npy"];
+    files["reconstructed.npy"] = npyBytes(report.reconstructed);
     files["suppressed.npy"] = npyBytes(report.suppressed);
     forEachPicture(report, [&](const std::string& name, const Grid& values, double black, double white) {
         files[name + ".png"] = pngBytes(values, black, white);
@@ -41,6 +42,7 @@ class Relief : public Command {
   private:
     ReliefReportOptions report_;
     std::optional<std::string> scheme_;
+    bool limit_ = false;
 };
 
 Relief::Relief()
@@ -63,6 +65,10 @@ Relief::Relief()
                        report_.layout = choice<ReliefLayout>(
                            v, {{"rows", ReliefLayout::Rows}, {"quincunx", ReliefLayout::Quincunx}});
                    });
+    options_.flag("--limit",
+                  "write levels and suppressed at their limit positions, on the surface that each controls; "
+                  "reconstructed stays",
+                  limit_);
     options_.flag("--compare-schemes", "compare the schemes' errors too", report_.compare);
     declareTalk();
 }
@@ -70,12 +76,14 @@ Relief::Relief()
 int Relief::run(Console& console) {
     if (scheme_)
         asked("--scheme", [&] { return surfaceScheme(*scheme_); });  // a wrong name is not the file's fault
+    report_.scheme = scheme_.value_or(report_.scheme);
+    report_.positions = positionsOf(limit_);
+    if (limit_) asked("--limit", [&] { return SurfaceLimit(surfaceScheme(report_.scheme)); });
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     openJson();
     const auto& input = arguments[0];
     const Grid grid = readGrid(input);
-    report_.scheme = scheme_.value_or(report_.scheme);
     const ReliefReport report = [&] {
         try {
             return reportRelief(grid, report_);

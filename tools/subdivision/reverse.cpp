@@ -23,11 +23,13 @@ class Reverse : public Command {
 
   private:
     DecomposeOptions decomposeOptions(const MeshScheme& scheme) const;
+    PolygonMesh baseToWrite(const Hierarchy& hierarchy) const;
     void write(const Hierarchy& hierarchy) const;
 
     int depth_ = kAllLevels;
     std::string scheme_ = "catmull-clark", variant_;
     std::optional<double> creaseAngle_;
+    bool limit_ = false;
     std::optional<std::filesystem::path> details_;
 };
 
@@ -52,6 +54,10 @@ Reverse::Reverse()
                    "loop, butterfly: refined, trial, wide",
                    [this](const std::string& v) { variant_ = v; });
     declareCrease(options_, creaseAngle_);
+    options_.flag("--limit",
+                  "write BASE at its limit positions, on the surface that it controls: for pictures, not for "
+                  "rebuild; --details stay those of the control positions",
+                  limit_);
     options_.result("--details", "FILE", "the file that gets the details", details_);
     declareTalk();
 }
@@ -65,8 +71,15 @@ DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
     return options;
 }
 
+PolygonMesh Reverse::baseToWrite(const Hierarchy& hierarchy) const {
+    PolygonMesh base = hierarchy.base;
+    if (limit_) base.points = limitPoints(hierarchy.base, hierarchy.scheme);
+    return base;
+}
+
 // The base and, when asked for, the details: both or none.
 void Reverse::write(const Hierarchy& hierarchy) const {
+    const std::string baseBytes = polygonMeshBytes(baseToWrite(hierarchy), polygonFormatOf(*output_));
     OutputFile baseFolders(*output_);
     std::optional<OutputFile> detailsFolders;
     if (details_) detailsFolders.emplace(*details_);
@@ -74,7 +87,7 @@ void Reverse::write(const Hierarchy& hierarchy) const {
     std::optional<AtomicFile> details;
     if (details_) details.emplace(*details_);
     try {
-        base.stream() << polygonMeshBytes(hierarchy.base, polygonFormatOf(*output_));
+        base.stream() << baseBytes;
         if (details) writeHierarchy(details->stream(), hierarchy);
     } catch (const std::ios_base::failure&) {
         throw OperationError(output_->string(), "writing failed; is the disk full? Nothing was left behind");
@@ -99,7 +112,8 @@ int Reverse::run(Console& console) {
             throw InputError(input.string(), error.what());
         }
     }();
-    const DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
+    DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
+    report.positions = positionsOf(limit_);
     readyToTell(console, jsonOf(report));
     write(hierarchy);
     if (report.roundTrip > kMeshRoundTrip * report.diagonal)

@@ -25,6 +25,9 @@ class Subdivide : public Command {
         declareDepth(options_, "1", "how many subdivisions", depth_);
         declareScheme(options_, scheme_);
         declareCrease(options_, creaseAngle_);
+        options_.flag("--limit",
+                      "write the vertices at their limit positions, where more subdivisions would take them",
+                      limit_);
         declareTalk();
     }
     bool needsOutput() const override { return true; }
@@ -36,6 +39,7 @@ class Subdivide : public Command {
     int depth_ = 1;
     std::string scheme_ = "catmull-clark";
     std::optional<double> creaseAngle_;
+    bool limit_ = false;
 };
 
 PolygonMesh Subdivide::coarse(Console& console) const {
@@ -56,13 +60,15 @@ int Subdivide::run(Console& console) {
     const PolygonMesh before = coarse(console);
     const PolygonMesh mesh = [&] {
         try {
-            return subdivided(before, scheme, depth_, console.progress());
+            PolygonMesh fine = subdivided(before, scheme, depth_, console.progress());
+            if (limit_) fine.points = limitPoints(fine, scheme);
+            return fine;
         } catch (const InputError& error) {
             throw InputError(arguments[0].string(), error.what());
         }
     }();
-    const SubdivisionReport report{std::string(scheme.name), depth_, before.creases.size(),
-                                   mesh.vertexCount(), mesh.faceCount()};
+    const SubdivisionReport report{std::string(scheme.name), depth_,           before.creases.size(),
+                                   mesh.vertexCount(),       mesh.faceCount(), positionsOf(limit_)};
     OutputFile out(*output_);
     readyToTell(console, jsonOf(report));
     writePolygonMesh(*output_, mesh);
