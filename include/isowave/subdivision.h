@@ -255,7 +255,7 @@ struct Rebuilt {
     RebuildReport report;
 };
 // The finest mesh of a hierarchy, edited and simplified. REQUIRES: `moved` is empty or has the base's size.
-// Throws as reconstruct() does.
+// Throws as reconstruct() does, and InputError when `moved` has the base's limit positions: details do not belong there.
 ISOWAVE_EXPORT Rebuilt rebuild(Hierarchy hierarchy, const RebuildOptions& options = {},
                                const Progress& progress = {});
 

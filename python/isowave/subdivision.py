@@ -124,12 +124,14 @@ def subdivide(
     scheme: str = "catmull-clark",
     depth: int = 1,
     creases: Creases = (),
+    limit: bool = False,
     progress: Optional[ProgressLike] = None,
 ) -> PolygonMesh:
     """A polygon mesh, subdivided ``depth`` times.
 
     mesh: a path (OBJ, OFF, PLY), (points (V, 3), faces), or a mesh of another package; faces: (F, corners) or lists.
     scheme: catmull-clark (any faces), loop or butterfly (triangles). creases: (vertex, vertex, sharpness), for catmull-clark.
+    limit: points at their limit positions, where more subdivisions would take them; with depth=0 those of the mesh itself.
 
     Raises InputError for an unknown scheme, a defect of the mesh, faces that the scheme does not take.
 
@@ -138,9 +140,11 @@ def subdivide(
     >>> points, faces = subdivide(cube, sides, depth=2)
     >>> points.shape, faces.shape
     ((98, 3), (96, 4))
+    >>> subdivide(cube, sides, depth=0, limit=True).points[0]
+    array([0.25, 0.25, 0.25])
     """
     watch = Watch(progress)
-    return _mesh(_native.subdivide(_polygons(mesh, faces, creases, watch), scheme, _depth(depth, 1), watch))
+    return _mesh(_native.subdivide(_polygons(mesh, faces, creases, watch), scheme, _depth(depth, 1), limit, watch))
 
 
 class Hierarchy:
@@ -189,12 +193,15 @@ class Hierarchy:
         frames: str = "global",
         threshold: Optional[float] = None,
         keep: Optional[int] = None,
+        limit: bool = False,
         progress: Optional[ProgressLike] = None,
     ) -> PolygonMesh:
         """The mesh ``depth`` subdivisions above the base; without it the finest, with its own order of vertices and faces.
 
         moved: the base's points (V, 3) after an edit. frames: "global", details keep their direction; "local", they turn
         with the surface. threshold: leave out details shorter than this. keep: only that many of the longest.
+        limit: the points at their limit positions, on the surface that they control. They are for looking at: as ``moved``
+        they are refused.
 
         Raises UsageError for a depth beyond len(self), InputError.
         """
@@ -207,7 +214,7 @@ class Hierarchy:
         if threshold is not None and keep is not None:
             raise UsageError("--threshold and --keep exclude each other; give one of them")
         watch = Watch(progress)
-        return _mesh(self._native.rebuild(_depth(depth, -1), points, frames, threshold, keep, watch)[0])
+        return _mesh(self._native.rebuild(_depth(depth, -1), points, frames, threshold, keep, limit, watch)[0])
 
     def __repr__(self) -> str:
         return f"<isowave.Hierarchy: {self.scheme}, {len(self)} subdivisions above {len(self.base.points):,} vertices>"

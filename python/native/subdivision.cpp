@@ -61,10 +61,13 @@ auto named(const Polygons& polygons, const py::object& watch, const Work& work) 
     });
 }
 
-py::tuple subdivide(const Polygons& polygons, const std::string& scheme, int depth, const py::object& watch) {
+py::tuple subdivide(const Polygons& polygons, const std::string& scheme, int depth, bool limit,
+                    const py::object& watch) {
     requireManifold(polygons.mesh, polygons.name);
     return tupleOf(named(polygons, watch, [&](const Progress& progress) {
-        return subdivided(polygons.mesh, scheme, depth, progress);
+        PolygonMesh fine = subdivided(polygons.mesh, scheme, depth, progress);
+        if (limit) fine.points = limitPoints(fine, scheme);
+        return fine;
     }));
 }
 
@@ -107,8 +110,11 @@ Frames framesOf(const std::string& name) {
 // The mesh after `steps` steps (-1: all) of the simplified and edited hierarchy, and the report as JSON.
 py::tuple rebuilt(const MadeHierarchy& made, int steps, const std::optional<PointArray>& moved,
                   const std::string& frames, std::optional<double> threshold, std::optional<std::size_t> keep,
-                  const py::object& watch) {
-    RebuildOptions options{.frames = framesOf(frames), .threshold = threshold, .keep = keep};
+                  bool limit, const py::object& watch) {
+    RebuildOptions options{.frames = framesOf(frames),
+                           .threshold = threshold,
+                           .keep = keep,
+                           .positions = limit ? Positions::limit : Positions::control};
     if (moved) options.moved = vectorsOf(*moved);
     if (steps > made.hierarchy.steps())
         throw UsageError("--depth: there are " + std::to_string(made.hierarchy.steps()) + " levels");

@@ -1,5 +1,6 @@
 #include "subdivision/meshes/hierarchy_report.h"
 
+#include "isowave/error.h"
 #include "subdivision/meshes/hierarchy.h"
 
 namespace isowave::subdivision {
@@ -12,6 +13,14 @@ std::vector<RebuildReport::Share> errorsAfterEdit(Hierarchy hierarchy, const std
                                                   const Progress& progress) {
     hierarchy.base.points = moved;
     return errorByShare(hierarchy, reconstruct(hierarchy, kAllLevels, progress), progress);
+}
+
+void refuseLimit(const Hierarchy& hierarchy, const std::vector<Vec3>& moved) {
+    PolygonMesh mesh = hierarchy.base;
+    mesh.points = moved;
+    if (isBaseAtLimit(hierarchy, mesh))
+        throw InputError(
+            "the moved base is at the limit positions, which are for looking at; give control positions");
 }
 
 }  // namespace
@@ -63,6 +72,7 @@ std::vector<RebuildReport::Share> errorByShare(const Hierarchy& hierarchy, const
 
 Rebuilt rebuild(Hierarchy hierarchy, const RebuildOptions& options, const Progress& progress) {
     const std::vector<Vec3> moved = options.moved.empty() ? hierarchy.base.points : options.moved;
+    refuseLimit(hierarchy, moved);
     const auto build = [&](const Hierarchy& part) {
         return reconstructEdited(part, moved, kAllLevels, options.frames, progress);
     };

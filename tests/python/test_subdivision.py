@@ -95,6 +95,18 @@ def test_an_edit_of_the_base_moves_all_and_simplifying_leaves_details_out():
         levels.rebuild(frames="other")
 
 
+def test_limit_positions_are_for_looking_at(tmp_path):
+    levels = isowave.reverse(ANCHOR, scheme="loop")
+    shown = levels.rebuild(0, limit=True)
+    np.testing.assert_array_equal(shown.points, isowave.subdivide(*levels.base, scheme="loop", depth=0, limit=True).points)
+    assert np.abs(shown.points - levels.base.points).max() > 1e-3
+    # Subdivision without details leads there.
+    far = isowave.subdivide(*levels.base, scheme="loop", depth=6).points[: len(shown.points)]
+    assert np.abs(far - shown.points).max() < 1e-2 * np.abs(levels.base.points - shown.points).max()  # seen 1.3e-3
+    with pytest.raises(isowave.InputError, match="limit positions"):
+        levels.rebuild(moved=shown.points)
+
+
 def test_errors():
     points, faces = isowave.subdivide(CAR, depth=1)
     with pytest.raises(isowave.InputError, match="mesh: "):

@@ -140,6 +140,20 @@ TEST(LimitPoints, OfButterflyAreTheVerticesThemselves) {
     EXPECT_GT(largestMove(mesh, meshScheme("loop")), 0.1);
 }
 
+TEST(LimitPoints, AreRefusedAsAnEditedBaseAndGivenForARebuiltMesh) {
+    const PolygonMesh base = torus(6, 5);
+    Hierarchy hierarchy =
+        decompose(subdivided(base, meshScheme("catmull-clark"), 1), "catmull-clark", {.levels = 1});
+    const auto limit = limitPoints(hierarchy.base, hierarchy.scheme);
+    EXPECT_THROW(rebuild(hierarchy, {.moved = limit}), InputError);
+    auto nearby = limit;
+    nearby[0].x += 1e-3;
+    EXPECT_NO_THROW(rebuild(hierarchy, {.moved = nearby}));
+    const Rebuilt written = rebuild(hierarchy, {.positions = Positions::limit});
+    EXPECT_EQ(written.report.positions, Positions::limit);
+    EXPECT_EQ(written.mesh.points, limitPoints(reconstruct(hierarchy), hierarchy.scheme));
+}
+
 TEST(LimitPoints, RefuseADefectAndAnUnknownScheme) {
     PolygonMesh mesh = spindle(4, false);
     EXPECT_THROW(limitPoints(mesh, "cubic"), InputError);
