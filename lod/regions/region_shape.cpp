@@ -59,9 +59,9 @@ RegionShape::Closed closed(TriangleMesh mesh, const std::string& name, const std
     RegionShape::Closed result;
     result.mesh = repairMesh(std::move(mesh), name, &report, asIs, progress);
     if (report.boundaryEdges > 0)
-        throw InputError(name, fmt::format("the mesh of a {} is open ({} edges have one triangle, the first "
-                                           "of {} loops); close it, or give a box",
-                                           what, report.boundaryEdges, report.boundaryLoops));
+        throw InputError(name, fmt::format("is open ({} edges have one triangle, the first of {} loops); "
+                                           "close the mesh of the {}, or give a box",
+                                           report.boundaryEdges, report.boundaryLoops, what));
     result.evenOdd = report.evenOdd;
     result.nearest = hierarchyOf(result.mesh);
     return result;

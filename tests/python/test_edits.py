@@ -184,7 +184,7 @@ def test_what_is_no_tool_is_refused(ring):
             old.edit(move=(((0, 0, 0), (1, 1, 1)), bad))
     with pytest.raises(isowave.UsageError, match="--with: 3 is a int"):
         old.edit(with_=3)
-    with pytest.raises(isowave.InputError, match="the mesh of a tool is open"):
+    with pytest.raises(isowave.InputError, match="the mesh of a tool: is open"):
         old.edit(add=(CORNERS, SIDES[:-1]))
 
 

@@ -95,7 +95,7 @@ TEST_F(RingRegions, AreRefusedInOneLineWhereTheyAreNone) {
     SmallMesh open = torus(20, 8);
     open.triangles.resize(open.triangles.size() / 2);
     writeStl(folder / "open.stl", open);
-    says(3, {"--fine", (folder / "open.stl").string(), "--quiet"}, "the mesh of a region is open");
+    says(3, {"--fine", (folder / "open.stl").string(), "--quiet"}, "open.stl: is open");
     fs::create_directories(folder / "other");
     says(2, {"--fine", (folder / "ring.stl").string(), "--json", (folder / "ring.stl").string()}, "ring.stl");
 }
