@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <span>
 
 #include "hold/plug.h"
 #include "hold/topology_candidates.h"

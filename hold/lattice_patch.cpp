@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 
-#include "polygonize/cell_table.h"
+#include "polygonize/cell_decision.h"
 
 namespace isowave {
 namespace {
@@ -83,24 +83,6 @@ LatticePatch::LatticePatch(const LatticeFunction& controlPoints, const Coord& lo
     lattice_.function = toFloats(onPoints(std::move(c)));
 }
 
-// In the middle of a cell, or of its low or high face on an axis: `low` is then that of the face. Not divided by 48^3.
-double LatticePatch::sum(const Coord& low, int onPointAxis) const {
-    static constexpr double kHalfway[4] = {1, 23, 23, 1}, kOnPoint[4] = {1, 4, 1, 0};
-    std::array<const double*, 3> weights{kHalfway, kHalfway, kHalfway};
-    std::array<int, 3> taps{4, 4, 4};
-    if (onPointAxis >= 0) {
-        weights[onPointAxis] = kOnPoint;
-        taps[onPointAxis] = 3;
-    }
-    double total = 0;
-    for (int x = 0; x < taps[0]; ++x)
-        for (int y = 0; y < taps[1]; ++y)
-            for (int z = 0; z < taps[2]; ++z)
-                total += weights[0][x] * weights[1][y] * weights[2][z] *
-                         fine_.values[fine_.index(low[0] + x, low[1] + y, low[2] + z)];
-    return total;
-}
-
 // The cell's triangles, its vertices inside, and those on the edges that start at its lowest corner.
 void LatticePatch::countCell(const Coord& low, Count& count) const {
     const LatticeFunction& f = lattice_.function;
@@ -116,14 +98,9 @@ void LatticePatch::countCell(const Coord& low, Count& count) const {
         count.triangles += static_cast<std::int64_t>(table.plain(pattern).triangles.size());
         return;
     }
-    CellDecision decision;
-    for (unsigned faces = table.ambiguousFaces(pattern); faces != 0; faces &= faces - 1) {
-        const int face = std::countr_zero(faces);
-        Coord at = low;
-        at[face / 2] += face % 2;
-        if (sum(at, face / 2) < 0) decision.joined |= static_cast<std::uint8_t>(1 << face);
-    }
-    if (table.needsMiddle(pattern, decision.joined)) decision.middleInside = sum(low, -1) < 0;
+    const CellDecision decision = decide(pattern, [&](int x, int y, int z) {
+        return fine_.values[fine_.index(low[0] + 1 + x, low[1] + 1 + y, low[2] + 1 + z)];
+    });
     const CellCase& chosen = table.at(pattern, decision);
     count.triangles += static_cast<std::int64_t>(chosen.triangles.size());
     count.vertices += std::popcount(chosen.rays);

@@ -27,7 +27,6 @@ class LatticePatch {
         std::int64_t vertices = 0, triangles = 0;
     };
     void countCell(const openvdb::Coord& low, Count& count) const;
-    double sum(const openvdb::Coord& low, int onPointAxis) const;
 
     MeshLattice lattice_;
     LatticeFunction fine_;  // control points of the lattice: lattice point (0,0,0) is at (1,1,1)

@@ -1,7 +1,6 @@
 #include "hold/local_edit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -114,7 +113,7 @@ double EditTrial::meanStep() const {
 
 void EditTrial::foresee() {
     planned_ = rowBox();
-    planned_.expand(std::max(1, refine_));
+    planned_.expand(refine_);
     marks_.reserve(static_cast<std::size_t>(planned_.volume()));
     for (auto at = planned_.begin(); at; ++at)
         marks_.push_back(patchBefore_.lattice().at(*at) < 0 ? kInside : 0);
@@ -220,7 +219,7 @@ void EditTrial::addCell(const Coord& low, bool thicker, std::vector<FieldRow>& r
         pattern |= static_cast<unsigned>(marks & kInside) << c;
         beside = beside || marks & kPlanned;
     }
-    if (cellTable().isPlain(pattern) || (beside && thicker > 0)) return;
+    if (cellTable().isPlain(pattern) || (beside && thicker)) return;
     const Vec3d middle = low.asVec3d() + Vec3d(0.5);
     addKept(middle, rows);
     for (int a = 0; a < 3; ++a) {

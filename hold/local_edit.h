@@ -1,4 +1,4 @@
-// A change of a field near a few lattice points that makes them inside or outside and keeps the sign of all others: tried
+// A change of a field near a few lattice points that makes them inside or outside and keeps the signs of all others as far as it can: tried
 // on a copy of the control points around, so that its effect on mesh and volume is known before the field is touched.
 #pragma once
 
@@ -25,7 +25,7 @@ struct EditManner {
     double margin =
         0.25;  // how far |F| is beyond 0 there, in mean differences of F over crossed lattice edges
     // Lattice points nearer than a control point to the plan's may change with them: a plug or a cut may become thicker, which a
-    // lattice finer than the control points often needs. All others keep their sign.
+    // lattice finer than the control points often needs. Of all others the signs should be kept.
     bool thicker = false;
 };
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "isowave/error.h"
@@ -19,6 +21,12 @@ inline void requirePositive(const char* option, const std::optional<double>& val
 }
 inline void requirePositive(const char* option, const std::vector<double>& values) {
     for (const double value : values) requirePositive(option, std::optional<double>(value));
+}
+
+// Throws UsageError: a number is not finite.
+inline void requireFinite(const std::string& option, std::span<const double> numbers) {
+    for (const double n : numbers)
+        if (!std::isfinite(n)) throw UsageError(fmt::format("{}: {:g} is no finite number", option, n));
 }
 
 // Throws UsageError: a value that is given is less.

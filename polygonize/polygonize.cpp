@@ -24,7 +24,7 @@
 
 #include "isowave/error.h"
 #include "polygonize/blocks.h"
-#include "polygonize/cell_table.h"
+#include "polygonize/cell_decision.h"
 #include "volume/cubic_weights.h"
 
 namespace isowave {
@@ -214,53 +214,6 @@ void forEachMixedCell(const std::vector<Block>& blocks, const Block& block, cons
     }
 }
 
-// Exact multiples of the field in the middles of faces and cells of a block: on an axis (1,23,23,1)/48 halfway between
-// lattice points, (1,4,1)/6 on one. Sums of weights have 15 bits, control points 24: exact in double unless neighbours differ by
-// more than 2^14 in size, so that both cells of a face see one sign.
-class Middles {
-  public:
-    Middles(const ShiftedField& field, const Coord& origin) { field.gather(origin, padded_); }
-
-    // cell: its lowest corner in the block; face as in a CellTable.
-    bool insideAtFace(const std::array<int, 3>& cell, int face) const {
-        std::array<int, 3> from = cell;
-        from[face / 2] += face % 2;
-        std::array<const double*, 3> weights{kHalfway, kHalfway, kHalfway};
-        weights[face / 2] = kOnPoint;
-        return sum(from, weights) < 0;
-    }
-    bool insideAtMiddle(const std::array<int, 3>& cell) const {
-        return sum(cell, {kHalfway, kHalfway, kHalfway}) < 0;
-    }
-
-  private:
-    static constexpr double kHalfway[4] = {1, 23, 23, 1}, kOnPoint[4] = {1, 4, 1, 0};
-
-    double sum(const std::array<int, 3>& from, const std::array<const double*, 3>& weights) const {
-        // The plane two beyond a face is not asked for: it may lie outside the block's margin.
-        const auto taps = [&](int axis) { return weights[axis] == kOnPoint ? 3 : 4; };
-        double total = 0;
-        for (int x = 0; x < taps(0); ++x)
-            for (int y = 0; y < taps(1); ++y)
-                for (int z = 0; z < taps(2); ++z)
-                    total += weights[0][x] * weights[1][y] * weights[2][z] *
-                             padded_.at(from[0] + x - 1, from[1] + y - 1, from[2] + z - 1);
-        return total;
-    }
-    PaddedBlock padded_;
-};
-
-CellDecision decide(const Middles& middles, const std::array<int, 3>& cell, unsigned pattern) {
-    CellDecision decision;
-    for (unsigned faces = cellTable().ambiguousFaces(pattern); faces != 0; faces &= faces - 1) {
-        const int face = std::countr_zero(faces);
-        if (middles.insideAtFace(cell, face)) decision.joined |= static_cast<std::uint8_t>(1 << face);
-    }
-    if (cellTable().needsMiddle(pattern, decision.joined))
-        decision.middleInside = middles.insideAtMiddle(cell);
-    return decision;
-}
-
 constexpr std::uint16_t cellNumber(int x, int y, int z) {
     return static_cast<std::uint16_t>((x * kBlock + y) * kBlock + z);
 }
@@ -268,7 +221,7 @@ constexpr std::uint16_t cellNumber(int x, int y, int z) {
 // Counts the block's vertices and triangles, and decides about its cells.
 void countCells(const std::vector<Block>& blocks, const ShiftedField& field, Block& block) {
     const CellTable& table = cellTable();
-    std::optional<Middles> middles;
+    std::optional<PaddedBlock> padded;
     block.decided.clear();
     std::size_t triangles = 0;
     unsigned onRays = 0;
@@ -277,8 +230,9 @@ void countCells(const std::vector<Block>& blocks, const ShiftedField& field, Blo
             triangles += table.plain(pattern).triangles.size();
             return;
         }
-        if (!middles) middles.emplace(field, block.origin);
-        const CellDecision decision = decide(*middles, {x, y, z}, pattern);
+        if (!padded) field.gather(block.origin, padded.emplace());
+        const CellDecision decision =
+            decide(pattern, [&](int dx, int dy, int dz) { return padded->at(x + dx, y + dy, z + dz); });
         const CellCase& cell = table.at(pattern, decision);
         block.decided.push_back({cellNumber(x, y, z), static_cast<std::uint16_t>(onRays), decision});
         triangles += cell.triangles.size();

@@ -1,15 +1,16 @@
-// Bytes compressed by gzip, for files that tests make.
+// Deflated bytes, for files that tests make.
 #pragma once
 
 #include <zlib.h>
 
 #include <string>
+#include <utility>
 
 namespace isowave::test {
 
-inline std::string gzipped(std::string text) {
+inline std::string deflated(std::string text, int windowBits) {
     z_stream z{};
-    deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    deflateInit2(&z, 9, Z_DEFLATED, windowBits, 8, Z_DEFAULT_STRATEGY);
     std::string out(deflateBound(&z, text.size()), '\0');
     z.next_in = reinterpret_cast<Bytef*>(text.data());
     z.avail_in = static_cast<uInt>(text.size());
@@ -20,5 +21,6 @@ inline std::string gzipped(std::string text) {
     deflateEnd(&z);
     return out;
 }
+inline std::string gzipped(std::string text) { return deflated(std::move(text), 15 + 16); }
 
 }  // namespace isowave::test

@@ -88,6 +88,22 @@ void requireLattice(const BSplineField& other, const BSplineField& own, int leve
                          fmt::format("has K = {:g}, expected {:g}, that of the pyramid", other.K, own.K));
 }
 
+// Points known in one of two fields whose control points differ by more than `most`, or that one alone knows.
+std::int64_t countDiffering(const BSplineField& a, const BSplineField& b, double most) {
+    const auto &x = a.controlPoints->constTree(), &y = b.controlPoints->constTree();
+    openvdb::MaskTree either(x, false, openvdb::TopologyCopy());
+    either.topologyUnion(y);
+    const openvdb::FloatGrid::ConstUnsafeAccessor ofA(x), ofB(y);
+    std::int64_t count = 0;
+    for (auto leaf = either.cbeginLeaf(); leaf; ++leaf)
+        for (auto point = leaf->cbeginValueOn(); point; ++point) {
+            float p = 0, q = 0;
+            const bool inA = ofA.probeValue(point.getCoord(), p), inB = ofB.probeValue(point.getCoord(), q);
+            count += inA != inB || std::abs(p - q) > most;
+        }
+    return count;
+}
+
 // ---- the edits, one after the other
 
 MeshTopology measured(const BSplineField& field, const Progress& progress) {
@@ -159,9 +175,7 @@ class Editor {
     void make(const EditCut& edit) { unite(edit.tool, true, "misses the solid; nothing would change"); }
 
     void make(const EditMove& edit) {
-        for (const double x : edit.by)
-            if (!std::isfinite(x))
-                throw UsageError(fmt::format("{}: {:g} is no finite number", story_.text, x));
+        requireFinite(story_.text, edit.by);
         if (edit.by == Point{}) throw UsageError(story_.text + ": moves by nothing");
         RegionBox moved = edit.box;
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -205,7 +219,7 @@ class Editor {
         if (wavelets::areSame(finest, field_))
             throw InputError(story_.text, "has the level 0 that is there already; nothing would change");
         tellBefore();
-        story_.touched = differing(finest, field_);
+        story_.touched = countDiffering(finest, field_, 0);
         field_ = std::move(finest);
         whole_ = std::move(other);
         pyramid_ = nullptr;
@@ -217,8 +231,6 @@ class Editor {
         story_.volumeBefore = measured_->volume;
         story_.partsBefore = measured_->parts;
     }
-
-    static std::int64_t differing(const BSplineField& a, const BSplineField& b);
 
     void take(const Change& change, const char* nothing) {
         if (change.empty()) throw InputError(story_.text, nothing);
@@ -242,26 +254,6 @@ class Editor {
     EditStory story_;
     std::vector<EditStory> stories_;
 };
-
-// Points known in one of two fields whose control points differ by more than `most`, or that one alone knows.
-std::int64_t countDiffering(const BSplineField& a, const BSplineField& b, double most) {
-    const auto &x = a.controlPoints->constTree(), &y = b.controlPoints->constTree();
-    openvdb::MaskTree either(x, false, openvdb::TopologyCopy());
-    either.topologyUnion(y);
-    const openvdb::FloatGrid::ConstUnsafeAccessor ofA(x), ofB(y);
-    std::int64_t count = 0;
-    for (auto leaf = either.cbeginLeaf(); leaf; ++leaf)
-        for (auto point = leaf->cbeginValueOn(); point; ++point) {
-            float p = 0, q = 0;
-            const bool inA = ofA.probeValue(point.getCoord(), p), inB = ofB.probeValue(point.getCoord(), q);
-            count += inA != inB || std::abs(p - q) > most;
-        }
-    return count;
-}
-
-std::int64_t Editor::differing(const BSplineField& a, const BSplineField& b) {
-    return countDiffering(a, b, 0);
-}
 
 void checkOptions(const wavelets::Pyramid& pyramid, const std::vector<Edit>& edits,
                   const EditingOptions& options) {
@@ -301,8 +293,6 @@ void checkSteps(const wavelets::Pyramid& pyramid, EditReport& report, const Prog
     }
 }
 
-std::string pointText(const Point& p) { return fmt::format("{:g},{:g},{:g}", p[0], p[1], p[2]); }
-
 }  // namespace
 
 std::string textOf(const Edit& edit) {
@@ -310,7 +300,7 @@ std::string textOf(const Edit& edit) {
         Overloaded{
             [](const EditAdd& e) { return "--add " + textOf(e.tool); },
             [](const EditCut& e) { return "--cut " + textOf(e.tool); },
-            [](const EditMove& e) { return "--move " + textOf(EditTool(e.box)) + " by " + pointText(e.by); },
+            [](const EditMove& e) { return "--move " + textOf(EditTool(e.box)) + " by " + textOf(e.by); },
             [](const EditWith& e) {
                 const auto* path = std::get_if<std::filesystem::path>(&e.other);
                 if (path) return "--with " + path->string();

@@ -9,7 +9,9 @@
 
 #include "isowave/error.h"
 #include "isowave/measure.h"
+#include "lod/option_checks.h"
 #include "lod/regions/region_distance.h"
+#include "polygonize/specks.h"
 #include "volume/blocks.h"
 #include "volume/cubic_weights.h"
 #include "volume/distance_mesh.h"
@@ -24,22 +26,15 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr int kLeaf = Leaf::DIM;
 constexpr double kLeastHalfWidth = 4;  // voxels of level L, as of any solid
 
-std::string textOf(const Point& p) { return fmt::format("{:g},{:g},{:g}", p[0], p[1], p[2]); }
-
-void requireFinite(const std::string& name, std::initializer_list<double> numbers) {
-    for (const double n : numbers)
-        if (!std::isfinite(n)) throw UsageError(fmt::format("{}: {:g} is no finite number", name, n));
-}
-
 void check(const Ball& ball, const std::string& name) {
-    requireFinite(name, {ball.centre[0], ball.centre[1], ball.centre[2]});
+    requireFinite(name, ball.centre);
     if (!(ball.radius > 0) || !std::isfinite(ball.radius))
         throw UsageError(fmt::format("{}: radius {:g} is not a number above 0", name, ball.radius));
 }
 
 RegionBox sorted(RegionBox box, const std::string& name) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        requireFinite(name, {box.low[axis], box.high[axis]});
+        requireFinite(name, std::array{box.low[axis], box.high[axis]});
         if (box.low[axis] == box.high[axis])
             throw UsageError(
                 fmt::format("{}: the box is empty, it has no extent along {}; give two opposite corners",
@@ -212,9 +207,7 @@ openvdb::math::Transform::Ptr latticeOf(const openvdb::math::Transform& finest, 
     return lattice;
 }
 
-double voxelOf(const openvdb::math::Transform& lattice) {
-    return std::cbrt(std::abs(lattice.baseMap()->getAffineMap()->getMat4().getMat3().det()));
-}
+double voxelOf(const openvdb::math::Transform& lattice) { return std::cbrt(nodeVolume(lattice)); }
 
 ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
                            const openvdb::math::Transform& lattice, int level, double reach,

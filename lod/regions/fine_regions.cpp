@@ -27,7 +27,8 @@ bool areApart(const PointBox& a, const PointBox& b) {
     return false;
 }
 
-std::string textOf(const Point& p) { return fmt::format("{:.4g},{:.4g},{:.4g}", p[0], p[1], p[2]); }
+// Of what is measured; textOf() is of what was given.
+std::string shortText(const Point& p) { return fmt::format("{:.4g},{:.4g},{:.4g}", p[0], p[1], p[2]); }
 
 }  // namespace
 
@@ -47,7 +48,7 @@ void FineRegions::requireWithin(const PointBox& solid) const {
             throw InputError(shape.name,
                              fmt::format("the region is outside the solid, which lies between {} and {} "
                                          "(world coordinates)",
-                                         textOf(solid.low), textOf(solid.high)));
+                                         shortText(solid.low), shortText(solid.high)));
 }
 
 void FineRegions::remember(int step, const BSplineField& field, int refine, double smallest,

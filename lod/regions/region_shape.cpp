@@ -12,8 +12,6 @@
 namespace isowave::lod {
 namespace {
 
-std::string textOf(const Point& p) { return fmt::format("{:g},{:g},{:g}", p[0], p[1], p[2]); }
-
 std::string optionOf(const FineRegion& region) { return "--fine " + lod::textOf(region); }
 
 void checkBox(const FineRegion& region, const FineRegion::Box& box) {
@@ -78,6 +76,8 @@ RegionShape::Closed closedMesh(const std::filesystem::path& path, const std::str
     LoadedMesh loaded = loadMesh(path, progress);
     return closed(std::move(loaded.mesh), path.string(), what, loaded.step, progress);
 }
+
+std::string textOf(const Point& point) { return fmt::format("{:g},{:g},{:g}", point[0], point[1], point[2]); }
 
 std::string textOf(const FineRegion& region) {
     if (const auto* box = std::get_if<FineRegion::Box>(&region.where))

@@ -13,6 +13,8 @@ namespace isowave::lod {
 
 // "0,0,0:10,20,30", "jaw.stl", "a mesh": what messages call it.
 std::string textOf(const FineRegion& region);
+// "1,2,3"
+std::string textOf(const Point& point);
 
 // Throws UsageError for a box without extent, numbers that are not finite, levels below 0 or not below the last one asked
 // for, and for options that do not go with regions. No file is read.

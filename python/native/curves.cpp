@@ -155,9 +155,7 @@ std::vector<std::string> optionNames() {
     Choices choices({});
     tools::OptionList options;
     choices.declareAll(options);
-    std::vector<std::string> names;
-    for (const tools::Option& option : options.all()) names.emplace_back(option.longName());
-    return names;
+    return namesOf(options);
 }
 
 }  // namespace

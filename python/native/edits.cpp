@@ -59,9 +59,7 @@ std::vector<std::string> optionNames() {
     tools::EditChoices choices;
     tools::OptionList options;
     choices.declare(options);
-    std::vector<std::string> names;
-    for (const tools::Option& option : options.all()) names.emplace_back(option.longName());
-    return names;
+    return namesOf(options);
 }
 
 }  // namespace

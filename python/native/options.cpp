@@ -40,15 +40,19 @@ SolidChoices::SolidChoices(const GivenOptions& given) {
     if (budgets.any()) budgets.maxGenus = levels.maxGenus;
 }
 
+std::vector<std::string> namesOf(const tools::OptionList& options) {
+    std::vector<std::string> names;
+    for (const tools::Option& option : options.all()) names.emplace_back(option.longName());
+    return names;
+}
+
 std::vector<std::string> solidOptionNames() {
     SolidOptions solid;
     LevelOptions levels;
     BudgetOptions budgets;
     tools::OptionList options;
     declare(options, solid, levels, budgets);
-    std::vector<std::string> names;
-    for (const tools::Option& option : options.all()) names.emplace_back(option.longName());
-    return names;
+    return namesOf(options);
 }
 
 }  // namespace isowave::python

@@ -26,7 +26,10 @@ struct SolidChoices {
     explicit SolidChoices(const GivenOptions& given);
 };
 
-// Their names, in the order of the help.
+// "--iso", ...: in the order of the help.
+std::vector<std::string> namesOf(const tools::OptionList& options);
+
+// The names of these choices.
 std::vector<std::string> solidOptionNames();
 
 }  // namespace isowave::python

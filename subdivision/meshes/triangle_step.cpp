@@ -361,15 +361,26 @@ PolygonMesh TriangleStep::fineMesh() const {
     return fine;
 }
 
+namespace {
+
+// rowOf(k, row) gives what each of n points is the sum of.
+template <class RowOf>
+std::vector<Vec3> sums(std::size_t n, const RowOf& rowOf, std::span<const Vec3> of) {
+    std::vector<Vec3> points(n);
+    Taps row;
+    for (Index k = 0; k < points.size(); ++k) {
+        rowOf(k, row);
+        points[k] = sum(row, of);
+    }
+    return points;
+}
+
+}  // namespace
+
 std::vector<Vec3> TriangleStep::subdivide(std::span<const Vec3> coarse) const {
     assert(coarse.size() == coarseSize());
-    std::vector<Vec3> fine(fineSize());
-    Taps row;
-    for (Index k = 0; k < fine.size(); ++k) {
-        rowOfP(k, row);
-        fine[k] = sum(row, coarse);
-    }
-    return fine;
+    return sums(
+        fineSize(), [this](Index k, Taps& row) { rowOfP(k, row); }, coarse);
 }
 
 void TriangleStep::limitRow(Index v, Taps& row) const {
@@ -389,13 +400,8 @@ void TriangleStep::limitRow(Index v, Taps& row) const {
 
 std::vector<Vec3> TriangleStep::limit(std::span<const Vec3> fine) const {
     assert(fine.size() == fineSize());
-    std::vector<Vec3> points(coarseSize());
-    Taps row;
-    for (Index v = 0; v < points.size(); ++v) {
-        limitRow(v, row);
-        points[v] = sum(row, fine);
-    }
-    return points;
+    return sums(
+        coarseSize(), [this](Index v, Taps& row) { limitRow(v, row); }, fine);
 }
 
 SubdivisionStep::Parts TriangleStep::decompose(std::span<const Vec3> fine) const {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/tools/inputs.h"
-#include "tests/tools/run_isowave.h"
+#include "tests/tools/refusal.h"
 
 namespace isowave::tools_test {
 namespace {
@@ -23,12 +23,7 @@ class EditedTorus : public ::testing::Test {
     }
     void expectRefused(std::vector<std::string> options, int exitCode, const std::string& text) const {
         options.insert(options.begin(), {"edit", at("old.vdb")});
-        const auto before = folder.snapshot();
-        const Result result = isowave(options);
-        EXPECT_EQ(result.exitCode, exitCode) << text;
-        EXPECT_EQ(result.errorLines(), 1) << result.err;
-        EXPECT_THAT(result.err, HasSubstr(text));
-        EXPECT_EQ(folder.snapshot(), before) << text;
+        tools_test::expectRefused(folder, options, exitCode, text);
     }
     Folder folder;
 };

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/tools/inputs.h"
-#include "tests/tools/run_isowave.h"
+#include "tests/tools/refusal.h"
 
 namespace isowave::tools_test {
 namespace {
@@ -21,12 +21,7 @@ class PackedTorus : public ::testing::Test {
     }
     void expectRefused(const std::vector<std::string>& arguments, int exitCode,
                        const std::string& text) const {
-        const auto before = folder.snapshot();
-        const Result result = isowave(arguments);
-        EXPECT_EQ(result.exitCode, exitCode) << text;
-        EXPECT_EQ(result.errorLines(), 1) << result.err;
-        EXPECT_THAT(result.err, HasSubstr(text));
-        EXPECT_EQ(folder.snapshot(), before) << text;
+        tools_test::expectRefused(folder, arguments, exitCode, text);
     }
     Folder folder;
 };

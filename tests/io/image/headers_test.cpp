@@ -1,11 +1,11 @@
 // What the headers of NIfTI, NRRD and MetaImage say, and what is taken from it: places, units, scaling, volumes, encodings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <cmath>
 #include <limits>
 
+#include "gzip.h"
 #include "tests/io/image/files.h"
 #include "tests/io/image/written.h"
 
@@ -41,22 +41,8 @@ void expectStep(const Image& image, std::size_t axis, const Triple& step) {
     EXPECT_THAT(image.indexToWorld.axis[axis], Pointwise(DoubleNear(1e-6), step));
 }
 
-std::string deflated(const std::string& text, int windowBits) {
-    z_stream z{};
-    deflateInit2(&z, 6, Z_DEFLATED, windowBits, 8, Z_DEFAULT_STRATEGY);
-    std::string out(text.size() + 1000, '\0');
-    std::string in = text;
-    z.next_in = reinterpret_cast<Bytef*>(in.data());
-    z.avail_in = static_cast<uInt>(in.size());
-    z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(out.size());
-    deflate(&z, Z_FINISH);
-    out.resize(z.total_out);
-    deflateEnd(&z);
-    return out;
-}
-std::string gzip(const std::string& text) { return deflated(text, 15 + 16); }
-std::string zlib(const std::string& text) { return deflated(text, 15); }
+std::string gzip(const std::string& text) { return test::gzipped(text); }
+std::string zlib(const std::string& text) { return test::deflated(text, 15); }
 
 // ---- NIfTI: places
 
