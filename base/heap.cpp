@@ -6,6 +6,10 @@
 
 #ifdef ISOWAVE_WITH_MIMALLOC
 #include <mimalloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <memory>
 #elif defined(__GLIBC__)
 #include <gnu/libc-version.h>
 #include <malloc.h>
@@ -28,6 +32,24 @@ void* orThrow(void* memory) {
     return memory;
 }
 
+// Address space as large as the machine's memory, of which only what is written to takes any. mimalloc unmaps a large block when it is
+// freed, and the next one is zeroed by the system page by page: but blocks of this.
+void lendAddressSpace() {
+    constexpr std::size_t kAlignment = std::size_t{32} << 20;  // of mimalloc's arenas
+    const long pages = sysconf(_SC_PHYS_PAGES), bytesOfPage = sysconf(_SC_PAGESIZE);
+    if (pages <= 0 || bytesOfPage <= 0) return;
+    const std::size_t size =
+        static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytesOfPage) / kAlignment * kAlignment;
+    void* const mapped = mmap(nullptr, size + kAlignment, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (mapped == MAP_FAILED) return;  // as under ulimit -v
+    void* start = mapped;
+    std::size_t space = size + kAlignment;
+    std::align(kAlignment, size, start, space);
+    madvise(start, size, MADV_HUGEPAGE);
+    mi_manage_os_memory(start, size, true, false, true, -1);
+}
+
 }  // namespace
 
 void* operator new(std::size_t size) { return orThrow(mi_malloc(size)); }
@@ -45,9 +67,10 @@ namespace isowave {
 void setUpHeap() {
 #ifdef ISOWAVE_WITH_MIMALLOC
     constexpr long kMillisecondsKept = 1'000'000;
-    reserve = mi_malloc(kReserveBytes);
     mi_option_enable(mi_option_large_os_pages);
     mi_option_set(mi_option_decommit_delay, kMillisecondsKept);
+    lendAddressSpace();
+    reserve = mi_malloc(kReserveBytes);
 #elif defined(__GLIBC__)
     constexpr int kNever = 2'000'000'000, kGrowBy = 64 << 20;
     constexpr int kLargestOnHeap = 32 << 20;  // the most that glibc takes: DEFAULT_MMAP_THRESHOLD_MAX
