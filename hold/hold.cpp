@@ -2,8 +2,10 @@
 #include "hold/hold.h"
 
 #include <openvdb/tools/Morphology.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +25,8 @@ using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 constexpr double kSamplesReachSurface = 1.25, kSamplesReachOut = 1.5;  // of H
-constexpr double kFewThin = 0.01;  // of the surface: so little asks for no finer sampling of all of it
+constexpr double kAwayReach = 1.6;  // of H: where it is asked how far the surface is, up to here
+constexpr double kFewThin = 0.01;   // of the surface: so little asks for no finer sampling of all of it
 constexpr double kCoarse = 3,
                  kFewCoarse = 0.1;  // of H, of the surface: what one sample a voxel cuts the corners off
 constexpr double kFewThickened = 0.002, kFewThickenedAtLevel1 = 0.05;  // of what is thin
@@ -178,11 +181,47 @@ class Rows {
         return {toLevel(at), sign, static_cast<float>(bound * slope_), static_cast<float>(rho), false};
     }
 
+    // The level's cells that hold every point of the surface that is asked for: places lie so far from a sample, and points
+    // are looked for so far from a place.
+    openvdb::MaskTree cellsAround() const {
+        const Vec3d h = scale_.h;
+        const double H = scale_.H, widest = std::max({h[0], h[1], h[2]}),
+                     fartherOut = (kSamplesReachOut + kAwayReach) * H,
+                     beside = kSamplesReachSurface * H +
+                              3 * (options_.leastThickness / 2 * widest + options_.margin * H),
+                     reach = std::max(fartherOut, beside) / std::min({h[0], h[1], h[2]});
+        openvdb::MaskTree cells;
+        openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(cells);
+        for (const ThinSample& s : samples_) accessor.setValueOn(Coord::floor(Vec3d(s.at) / h));
+        openvdb::tools::dilateActiveValues(cells, static_cast<int>(std::ceil(reach)) + 1,
+                                           openvdb::tools::NN_FACE_EDGE_VERTEX, openvdb::tools::EXPAND_TILES);
+        return cells;
+    }
+    // Points of the surface in these, ascending.
+    std::vector<std::uint32_t> surfaceAround() const {
+        const openvdb::MaskTree cells = cellsAround();
+        tbb::enumerable_thread_specific<std::vector<std::uint32_t>> found;
+        tbb::parallel_for(
+            tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(surface_.points.size()), 4096),
+            [&](const auto& range) {
+                progress_.check();
+                const openvdb::tree::ValueAccessor<const openvdb::MaskTree> accessor(cells);
+                std::vector<std::uint32_t>& mine = found.local();
+                for (std::uint32_t i = range.begin(); i != range.end(); ++i)
+                    if (accessor.isValueOn(Coord::floor(surface_.points[i] / scale_.h))) mine.push_back(i);
+            });
+        std::vector<std::uint32_t> all;
+        for (const auto& mine : found) all.insert(all.end(), mine.begin(), mine.end());
+        tbb::parallel_sort(all.begin(), all.end());
+        return all;
+    }
+
     void chooseSurface() {
         const Vec3d size = openvdb::math::maxComponent(cell(), Vec3d(0.5));
-        near_ = onePlacePerCell(
-            surface_.points.size(), size, [&](std::uint32_t i) { return surface_.points[i]; },
+        near_ = onePerCell(
+            surfaceAround(), size, [&](std::uint32_t i) { return surface_.points[i]; },
             [](std::uint32_t) { return 0.0; });
+        std::sort(near_.begin(), near_.end());
         sampleOf_.assign(near_.size(), PointGrid::kNone);
         forEach(near_.size(), progress_, [&](std::size_t i) {
             sampleOf_[i] = grid_->nearest(surface_.points[near_[i]], kSamplesReachSurface * scale_.H).index;
@@ -242,8 +281,8 @@ class Rows {
         forEach(places.size(), progress_, [&](std::size_t i) {
             const PointGrid::Nearest near = grid_->nearest(places[i], kSamplesReachOut * H);
             if (near.index == PointGrid::kNone) return;
-            const double e = grown(samples_[near.index]), g = away_->at(places[i], 1.6 * H);
-            wanted[i] = g > 0 && g < 1.6 * H && g > e + first * H && g < e + 0.9 * H;
+            const double e = grown(samples_[near.index]), g = away_->at(places[i], kAwayReach * H);
+            wanted[i] = g > 0 && g < kAwayReach * H && g > e + first * H && g < e + 0.9 * H;
         });
         for (std::size_t i = 0; i < places.size(); ++i)
             if (wanted[i]) soft_.push_back(row(places[i], -1, 0, options_.rho));

@@ -45,12 +45,15 @@ std::uint64_t lineOf(const Vec3d& at, int axis) {
 }
 
 std::vector<OnLine> verticesOnLines(const FinestSurface& surface) {
-    std::vector<OnLine> found;
-    found.reserve(surface.points.size());
-    for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
+    constexpr std::uint64_t kNoLine = ~std::uint64_t{0};
+    std::vector<OnLine> found(surface.points.size());
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t v) {
         const Vec3d at = surface.points[v] * surface.refine;
-        if (const int axis = axisOf(at); axis >= 0) found.push_back({lineOf(at, axis), at[axis], v});
-    }
+        const int axis = axisOf(at);
+        found[v] = {axis < 0 ? kNoLine : lineOf(at, axis), axis < 0 ? 0 : at[axis],
+                    static_cast<std::uint32_t>(v)};
+    });
+    std::erase_if(found, [](const OnLine& v) { return v.line == kNoLine; });
     tbb::parallel_sort(found.begin(), found.end(), [](const OnLine& a, const OnLine& b) {
         return a.line != b.line ? a.line < b.line : a.along < b.along;
     });
@@ -116,17 +119,23 @@ double areaOf(const FinestSurface& surface) {
 
 std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longest, Side side,
                                       const Progress& progress) {
+    constexpr std::size_t kInPiece = 1 << 16;
     const std::vector<OnLine> vertices = verticesOnLines(surface);
-    std::vector<ThinSample> samples(vertices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(1, std::max<std::size_t>(1, vertices.size()), 4096),
-                      [&](const auto& range) {
-                          progress.check();
-                          for (std::size_t i = range.begin(); i != range.end(); ++i)
-                              if (vertices[i - 1].line == vertices[i].line)
-                                  samples[i] =
-                                      sampleBetween(surface, vertices[i - 1], vertices[i], longest, side);
-                      });
-    std::erase_if(samples, [](const ThinSample& s) { return !(s.thickness > 0); });
+    std::vector<std::vector<ThinSample>> pieces(vertices.size() / kInPiece + 1);
+    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t piece) {
+        progress.check();
+        const std::size_t begin = std::max<std::size_t>(1, piece * kInPiece),
+                          end = std::min(vertices.size(), (piece + 1) * kInPiece);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (vertices[i - 1].line != vertices[i].line) continue;
+            const ThinSample s = sampleBetween(surface, vertices[i - 1], vertices[i], longest, side);
+            if (s.thickness > 0) pieces[piece].push_back(s);
+        }
+    });
+    std::vector<ThinSample> samples;
+    samples.reserve(std::accumulate(pieces.begin(), pieces.end(), std::size_t{0},
+                                    [](std::size_t n, const auto& piece) { return n + piece.size(); }));
+    for (const auto& piece : pieces) samples.insert(samples.end(), piece.begin(), piece.end());
     return samples;
 }
 
