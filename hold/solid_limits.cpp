@@ -14,8 +14,9 @@ bool SolidLimits::allow(const SolidCounts& counts) const {
 SolidCounts meshedCounts(const BSplineField& field, int refine, double smallestPart,
                          const Progress& progress) {
     TriangleMesh mesh = polygonize(field, {.refine = refine}, progress);
-    removeSpecks(mesh, smallestPart);
-    const MeshTopology topology = topologyOf(mesh);
+    MeshComponents components = componentsOf(mesh);
+    removeSpecks(mesh, smallestPart, components);
+    const MeshTopology topology = closedTopologyOf(mesh, components);
     return {topology.parts, topology.genus, topology.cavities};
 }
 

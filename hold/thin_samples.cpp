@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "polygonize/topology.h"
-
 namespace isowave {
 namespace {
 
@@ -86,7 +84,8 @@ ThinSample sampleBetween(const FinestSurface& surface, const OnLine& in, const O
 
 }  // namespace
 
-FinestSurface surfaceOf(const TriangleMesh& mesh, const openvdb::math::Transform& transform, int refine) {
+FinestSurface surfaceOf(const TriangleMesh& mesh, const MeshComponents& components,
+                        const openvdb::math::Transform& transform, int refine) {
     FinestSurface surface;
     surface.refine = refine;
     surface.spacing = transform.voxelSize();
@@ -96,7 +95,6 @@ FinestSurface surfaceOf(const TriangleMesh& mesh, const openvdb::math::Transform
     surface.partVolume.resize(count);
     const double voxel = transform.baseMap()->determinant();
     const openvdb::Mat3d linear = transform.baseMap()->getAffineMap()->getMat4().getMat3();
-    const MeshComponents components = componentsOf(mesh);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) {
         surface.points[v] = transform.worldToIndex(Vec3d(mesh.points[v].data()));
         // index -> world is x M: the gradient in index space is M times that of the world.

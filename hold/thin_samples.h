@@ -11,6 +11,7 @@
 
 #include "isowave/mesh.h"
 #include "isowave/progress.h"
+#include "polygonize/topology.h"
 #include "volume/vdb.h"
 
 namespace isowave {
@@ -24,8 +25,9 @@ struct FinestSurface {
     int refine = 1;                       // samples of a voxel that the mesh was made of
 };
 
-// mesh: as polygonize() made it of a field with this transform, vertices and normals untouched.
-FinestSurface surfaceOf(const TriangleMesh& mesh, const openvdb::math::Transform& transform, int refine);
+// components: the mesh's. mesh: as polygonize() made it of a field with this transform, vertices and normals untouched.
+FinestSurface surfaceOf(const TriangleMesh& mesh, const MeshComponents& components,
+                        const openvdb::math::Transform& transform, int refine);
 
 struct ThinSample {
     openvdb::Vec3f at{0.0f};      // in the middle

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/number_text.h"
 #include "hold/hold.h"
@@ -159,16 +160,17 @@ std::vector<double> LevelMesher::thinValues(const BSplineField& field, int refin
     return level0_->thin->valuesOn(fine, spacing, progress_);
 }
 
-void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine) {
+void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& mesh,
+                                 const MeshComponents& components, int refine) {
     level0_ = std::make_unique<Level0>();
     if (mesh.triangles.empty()) return;
-    level0_->volume = volumeWithoutSpecks(mesh, 0);
+    level0_->volume = std::accumulate(components.volume.begin(), components.volume.end(), 0.0);
     if (options_.refit) level0_->surface = surfaceSamples(mesh);
     if (options_.hold == Holding::local) {
         const StageClock::Scope scope(clock_, "hold");
         progress_("finding what is thin", 0);
-        level0_->hold =
-            std::make_unique<LevelHold>(surfaceOf(mesh, field.transform(), refine), field, progress_);
+        level0_->hold = std::make_unique<LevelHold>(surfaceOf(mesh, components, field.transform(), refine),
+                                                    field, progress_);
     }
     if (wantsThin_) {
         const StageClock::Scope scope(clock_, "thin parts");
@@ -194,7 +196,7 @@ void LevelMesher::putIso(LevelMesh& level, double smallest) const {
     if (level.iso != 0) {
         TriangleMesh unmoved = polygonizeAt(level.field, 0, report.refine);
         removeSpecks(unmoved, smallest);
-        const MeshTopology before = topologyOf(unmoved);
+        const MeshTopology before = closedTopologyOf(unmoved);
         report.volumeAtIso0 = before.volume;
         const double area = (before.area + topology.area) / 2;
         report.isoDistance = area > 0 ? (topology.volume - before.volume) / area : 0;
@@ -363,7 +365,7 @@ LevelMesher::Draft LevelMesher::shifted(Draft draft, int step, const BSplineFiel
 LevelMesher::Sampled LevelMesher::sampledLevel0(const BSplineField& field) {
     Sampled sampled = sampledAsInput(field);
     if (truth_.counts && !sampled.mesh.triangles.empty()) {
-        const SolidCounts counts = countsOf(topologyOf(sampled.mesh));
+        const SolidCounts counts = countsOf(closedTopologyOf(sampled.mesh));
         const bool more = counts.parts > truth_.counts->parts || counts.cavities > truth_.counts->cavities;
         if (more) smallest0_ = nodeVolume(field.transform());
     }
@@ -378,12 +380,12 @@ LevelMesher::Sampled LevelMesher::sampledAsInput(const BSplineField& field) cons
         return !truth_.counts || countsOf(t) == *truth_.counts;
     };
     Sampled now{1, polygonizeAt(field, 0, 1)};
-    MeshTopology topology = topologyOf(now.mesh);
+    MeshTopology topology = closedTopologyOf(now.mesh);
     while (now.refine < kFinestRefine) {
         const bool near = std::abs(topology.volume / *truth_.volume - 1) <= kNear;
         if (near && isRight(topology)) return now;
         Sampled finer{2 * now.refine, polygonizeAt(field, 0, 2 * now.refine)};
-        const MeshTopology finerTopology = topologyOf(finer.mesh);
+        const MeshTopology finerTopology = closedTopologyOf(finer.mesh);
         const bool nearer = std::abs(finerTopology.volume - topology.volume) > kNoNearer * *truth_.volume;
         if (!nearer && countsOf(finerTopology) == countsOf(topology)) return now;
         now = std::move(finer);
@@ -406,7 +408,7 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
         refine *= 2;
         TriangleMesh mesh = polygonizeAt(level.field, level.iso, refine);
         removeSpecks(mesh, smallestAt(step, level.field));
-        finer = countsOf(topologyOf(mesh));
+        finer = countsOf(closedTopologyOf(mesh));
     } while (isMore(finer, before) && 2 * refine <= finest);
     SamplingReport report{refine, finer, {}};
     if (level0_ && level0_->thin) report.thinKept = shareInside(thinValues(level.field, refine), level.iso);
@@ -467,9 +469,10 @@ void LevelMesher::draw(Draft& draft, TriangleMesh ready) {
     const int step = level.report.step, refine = level.report.refine;
     const bool isReady = level.iso == 0 && !ready.triangles.empty();
     level.mesh = isReady ? std::move(ready) : polygonizeAt(level.field, level.iso, refine);
-    if (step == 0) rememberLevel0(level.field, level.mesh, refine);
-    draft.removal = removeSpecks(level.mesh, smallestAt(step, level.field));
-    level.report.topology = topologyOf(level.mesh);
+    MeshComponents components = componentsOf(level.mesh);
+    if (step == 0) rememberLevel0(level.field, level.mesh, components, refine);
+    draft.removal = removeSpecks(level.mesh, smallestAt(step, level.field), components);
+    level.report.topology = closedTopologyOf(level.mesh, components);
 }
 
 LevelMesh LevelMesher::completed(Draft draft) const {
@@ -478,7 +481,7 @@ LevelMesh LevelMesher::completed(Draft draft) const {
     {
         const StageClock::Scope scope(clock_, "polygonize");
         if (compacts(refine)) compact(level.mesh, refine, level.field, level.iso);
-        if (compacts(refine) || options_.relax > 0 || openBorder_) finish(level);
+        finish(level);
     }
     putRemoval(level, draft.removal, smallestAt(level.report.step, level.field));
     return std::move(draft.level);

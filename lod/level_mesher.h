@@ -74,7 +74,8 @@ class LevelMesher {
     Sampled sampled(int step, const BSplineField& field);
     Sampled sampledLevel0(const BSplineField& field);
     Sampled sampledAsInput(const BSplineField& field) const;
-    // A level whose mesh has its parts, handles, cavities and volume, and all its triangles.
+    // A level whose mesh has its parts, handles, cavities and volume, and all its triangles. That it is closed and 2-manifold
+    // is taken on trust here and counted when it is completed.
     struct Draft {
         LevelMesh level;
         SpeckRemoval removal;
@@ -100,7 +101,8 @@ class LevelMesher {
     void draw(Draft& draft, TriangleMesh ready = {});
     void compact(TriangleMesh& mesh, int refine, const BSplineField& field, double iso) const;
     bool compacts(int refine) const;
-    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, int refine);
+    void rememberLevel0(const BSplineField& field, const TriangleMesh& mesh, const MeshComponents& components,
+                        int refine);
     double volumeToKeep() const;
     double isoPreservingVolume(const LevelMesh& level, double smallest) const;
     std::vector<double> thinValues(const BSplineField& field, int refine) const;

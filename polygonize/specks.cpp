@@ -76,6 +76,13 @@ SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest) {
     return removeThese(mesh, components, areSpecks(components.volume, smallest));
 }
 
+SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest, MeshComponents& components) {
+    if (!(smallest > 0)) return {};
+    SpeckRemoval removal = removeThese(mesh, components, areSpecks(components.volume, smallest));
+    if (removal.specks + removal.bubbles != 0) components = componentsOf(mesh);
+    return removal;
+}
+
 SpeckRemoval removeSpecks(TriangleMesh& mesh, const std::vector<double>& smallestAt) {
     const MeshComponents components = componentsOf(mesh);
     std::vector<double> smallest(components.count(), std::numeric_limits<double>::infinity());

@@ -33,6 +33,8 @@ std::vector<bool> areSpecks(const std::vector<double>& volumes, double smallest)
 // (2) The mesh that stays is as closed, manifold and oriented as it was: whole components go.
 // (3) The largest part stays, whatever its size.
 SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest);
+// components: the mesh's, before and afterwards.
+SpeckRemoval removeSpecks(TriangleMesh& mesh, double smallest, MeshComponents& components);
 // The same where what is too small differs from place to place: of a component it is the least of its points'.
 // REQUIRES: smallestAt has one value a point.
 SpeckRemoval removeSpecks(TriangleMesh& mesh, const std::vector<double>& smallestAt);

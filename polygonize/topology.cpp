@@ -151,25 +151,46 @@ StarCounts countStars(const TriangleMesh& mesh) {
     return result;
 }
 
-std::vector<ComponentTopology> measured(const TriangleMesh& mesh, const std::vector<std::uint32_t>& edgesUp) {
-    const MeshComponents components = componentsOf(mesh);
+// edgesUp: null where all edges have two triangles.
+std::vector<ComponentTopology> measured(const TriangleMesh& mesh, const MeshComponents& components,
+                                        const std::vector<std::uint32_t>* edgesUp) {
     std::vector<ComponentTopology> each(components.count());
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
         if (components.of[v] == MeshComponents::kNone) continue;
         ComponentTopology& c = each[components.of[v]];
         ++c.vertices;
-        c.edges += edgesUp[v];
+        if (edgesUp != nullptr) c.edges += (*edgesUp)[v];
     }
     for (const Triangle& t : mesh.triangles)
         if (!isDegenerate(t)) ++each[components.of[t[0]]].triangles;
     for (std::size_t i = 0; i < each.size(); ++i) {
         ComponentTopology& c = each[i];
+        if (edgesUp == nullptr) c.edges = 3 * c.triangles / 2;
         c.volume = components.volume[i];
         c.area = components.area[i];
         c.euler = c.vertices - c.edges + c.triangles;
         c.genus = (2 - c.euler) / 2;
     }
     return each;
+}
+
+MeshTopology summed(const TriangleMesh& mesh, std::vector<ComponentTopology> each) {
+    MeshTopology result;
+    result.each = std::move(each);
+    result.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+    result.degenerateTriangles = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), isDegenerate);
+    result.components = static_cast<std::int64_t>(result.each.size());
+    for (const ComponentTopology& c : result.each) {
+        result.vertices += c.vertices;
+        result.genus += c.genus;
+        ++(c.volume < 0 ? result.cavities : result.parts);
+        result.volume += c.volume;
+        result.area += c.area;
+    }
+    std::stable_sort(result.each.begin(), result.each.end(), [](const auto& a, const auto& b) {
+        return std::abs(a.volume) > std::abs(b.volume);  // ties stay in the order of their smallest vertex
+    });
+    return result;
 }
 
 }  // namespace
@@ -194,26 +215,18 @@ MeshComponents componentsOf(const TriangleMesh& mesh) {
 
 MeshTopology topologyOf(const TriangleMesh& mesh) {
     const StarCounts stars = countStars(mesh);
-    MeshTopology result;
-    result.each = measured(mesh, stars.edgesUp);
-    result.triangles = static_cast<std::int64_t>(mesh.triangles.size());
-    result.degenerateTriangles = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), isDegenerate);
+    MeshTopology result = summed(mesh, measured(mesh, componentsOf(mesh), &stars.edgesUp));
     result.boundaryEdges = stars.counts.boundary;
     result.nonManifoldEdges = stars.counts.nonManifold;
     result.misorientedEdges = stars.counts.misoriented;
     result.nonManifoldVertices = stars.counts.nonManifoldVertices;
-    result.components = static_cast<std::int64_t>(result.each.size());
-    for (const ComponentTopology& c : result.each) {
-        result.vertices += c.vertices;
-        result.genus += c.genus;
-        ++(c.volume < 0 ? result.cavities : result.parts);
-        result.volume += c.volume;
-        result.area += c.area;
-    }
-    std::stable_sort(result.each.begin(), result.each.end(), [](const auto& a, const auto& b) {
-        return std::abs(a.volume) > std::abs(b.volume);  // ties stay in the order of their smallest vertex
-    });
     return result;
 }
+
+MeshTopology closedTopologyOf(const TriangleMesh& mesh, const MeshComponents& components) {
+    return summed(mesh, measured(mesh, components, nullptr));
+}
+
+MeshTopology closedTopologyOf(const TriangleMesh& mesh) { return closedTopologyOf(mesh, componentsOf(mesh)); }
 
 }  // namespace isowave

@@ -21,4 +21,9 @@ struct MeshComponents {
 // What topologyOf() knows of components at a fifth of its price: no edges, so no genus.
 MeshComponents componentsOf(const TriangleMesh& mesh);
 
+// topologyOf() of a mesh that is known to be closed, oriented and 2-manifold, as polygonize() makes it: three sides a triangle
+// are two an edge, and no star is looked at, which is most of the price. components: componentsOf(mesh).
+MeshTopology closedTopologyOf(const TriangleMesh& mesh, const MeshComponents& components);
+MeshTopology closedTopologyOf(const TriangleMesh& mesh);
+
 }  // namespace isowave

@@ -55,7 +55,8 @@ struct Levels {
     explicit Levels(BSplineField field, int level = 2)
         : finest(std::move(field)), plain(levelOf(finest, level)) {
         const TriangleMesh mesh = polygonize(finest, {.refine = 2});
-        hold = std::make_unique<LevelHold>(surfaceOf(mesh, finest.transform(), 2), finest);
+        hold =
+            std::make_unique<LevelHold>(surfaceOf(mesh, componentsOf(mesh), finest.transform(), 2), finest);
     }
     BSplineField held(int refine, HoldReport* report = nullptr, const HoldOptions& options = {}) const {
         BSplineField field = plain;

@@ -156,6 +156,30 @@ TEST(Topology, OfNothingIsNothing) {
     EXPECT_EQ(t.components, 0);
 }
 
+TEST(Topology, OfAClosedMeshIsTheSameWithoutLookingAtStars) {
+    TriangleMesh mesh = torusMesh(40, 20);
+    append(mesh, torusMesh(30, 10, {20, 0, 0}));
+    append(mesh, tetrahedron({-20, 0, 0}));
+    std::swap(mesh.triangles.back()[0], mesh.triangles.back()[1]);  // inside out as a whole: a cavity
+    for (std::size_t t = mesh.triangles.size() - 4; t + 1 < mesh.triangles.size(); ++t)
+        std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+    mesh.points.push_back({5, 5, 5});  // which no triangle uses
+    const MeshTopology full = topologyOf(mesh), quick = closedTopologyOf(mesh);
+    ASSERT_TRUE(full.closed());
+    EXPECT_EQ(quick.parts, 2);
+    EXPECT_EQ(quick.cavities, 1);
+    EXPECT_EQ(quick.genus, 2);
+    EXPECT_EQ(quick.vertices, full.vertices);
+    EXPECT_EQ(quick.volume, full.volume);
+    EXPECT_EQ(quick.area, full.area);
+    ASSERT_EQ(quick.each.size(), full.each.size());
+    for (std::size_t i = 0; i < full.each.size(); ++i) {
+        EXPECT_EQ(quick.each[i].edges, full.each[i].edges);
+        EXPECT_EQ(quick.each[i].euler, full.each[i].euler);
+        EXPECT_EQ(quick.each[i].volume, full.each[i].volume);
+    }
+}
+
 TEST(Topology, DoesNotDependOnThreads) {
     TriangleMesh mesh = torusMesh(700, 400);
     mesh.triangles.erase(mesh.triangles.begin() + 1000);
