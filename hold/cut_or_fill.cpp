@@ -105,7 +105,7 @@ class Limiter {
         const std::size_t before = result_.edits.size();
         for (std::size_t most = 2 * need + kSpare; result_.edits.size() == before;) {
             const std::size_t useless = useless_.size();
-            const std::vector<EditOptions> all = candidates.of(what, most);
+            const std::vector<EditOptions> all = candidates.of(what, need, most);
             take(chosen(tried(all), need));
             if (result_.edits.size() > before || useless_.size() > useless) continue;
             if (all.size() < most) break;

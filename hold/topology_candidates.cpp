@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <unordered_set>
+#include <utility>
 
 #include "hold/plug.h"
 #include "hold/until_stopped.h"
@@ -263,26 +264,31 @@ EditOptions TopologyCandidates::cavity(const PersistentClass& c) const {
 }
 
 // Growing plugs takes milliseconds a thing, and a large level has thousands: those that begin or end nearest to the surface go
-// first, and what comes after sixteen times as many as are wanted is left.
-std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::size_t most) const {
-    std::vector<PersistentClass> wanted;
+// first. The rest is left once twice `most` more of them bring nothing cheaper than what is there, and after 16 times as many.
+std::vector<EditOptions> TopologyCandidates::of(TopologyEdit::What what, std::size_t wanted,
+                                                std::size_t most) const {
+    std::vector<PersistentClass> things;
     for (const PersistentClass& c : classes_)
-        if (c.dimension == static_cast<int>(what)) wanted.push_back(c);
+        if (c.dimension == static_cast<int>(what)) things.push_back(c);
     const auto depth = [](const PersistentClass& c) { return std::min(-c.birth, c.death); };
-    std::stable_sort(wanted.begin(), wanted.end(),
+    std::stable_sort(things.begin(), things.end(),
                      [&](const PersistentClass& a, const PersistentClass& b) { return depth(a) < depth(b); });
-    const std::size_t largest = what == What::part ? largestPart() : 0, enough = 16 * most;
+    const std::size_t largest = what == What::part ? largestPart() : 0, piece = 2 * most, enough = 16 * most;
     std::vector<EditOptions> all;
-    for (std::size_t done = 0; done < wanted.size() && all.size() < enough; done += enough) {
-        std::vector<EditOptions> next(std::min(enough, wanted.size() - done));
+    double dearest = std::numeric_limits<double>::infinity();  // of the cheapest `wanted`
+    for (std::size_t done = 0; done < things.size() && all.size() < enough; done += piece) {
+        std::vector<EditOptions> next(std::min(piece, things.size() - done));
         forEachUntilStopped(next.size(), progress_,
-                            [&](std::size_t i) { next[i] = optionsOf(wanted[done + i], largest); });
+                            [&](std::size_t i) { next[i] = optionsOf(things[done + i], largest); });
         for (EditOptions& options : next)
             if (!options.empty()) all.push_back(std::move(options));
+        std::stable_sort(all.begin(), all.end(), [](const EditOptions& a, const EditOptions& b) {
+            return isEstimatedLess(a.front(), b.front());
+        });
+        if (all.size() < most) continue;
+        const double before = std::exchange(dearest, all[wanted - 1].front().estimate);
+        if (dearest >= before) break;
     }
-    std::stable_sort(all.begin(), all.end(), [](const EditOptions& a, const EditOptions& b) {
-        return isEstimatedLess(a.front(), b.front());
-    });
     if (all.size() > most) all.resize(most);
     return all;
 }

@@ -72,8 +72,8 @@ class TopologyCandidates {
     TopologyCandidates(const BSplineField& field, int refine, double smallestPart, const Depth& depth,
                        PlugMemo& memo, const std::set<OptionKey>& useless, const Progress& progress);
 
-    // By least estimate. Up to `most` things; the largest part is not among them.
-    std::vector<EditOptions> of(TopologyEdit::What what, std::size_t most) const;
+    // By least estimate. Up to `most` things, of which `wanted` are to be had; the largest part is not among them.
+    std::vector<EditOptions> of(TopologyEdit::What what, std::size_t wanted, std::size_t most) const;
 
   private:
     using Points = std::vector<std::int64_t>;
