@@ -66,8 +66,8 @@ class Limiter {
             const Progress& progress)
         : field_(field), refine_(refine), limits_(limits), smallest_(smallestPart), progress_(progress) {}
 
-    TopologyEdits run() {
-        result_.before = result_.after = count(field_);
+    TopologyEdits run(const SolidCounts& now) {
+        result_.before = result_.after = now;
         bool goesOn = !limits_.allow(result_.after);
         while (goesOn) {
             progress_("limiting the topology", 0);
@@ -274,7 +274,13 @@ class Limiter {
 
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress) {
-    return Limiter(field, refine, limits, smallestPart, progress).run();
+    return limitTopology(field, refine, limits, smallestPart,
+                         meshedCounts(field, refine, smallestPart, progress), progress);
+}
+
+TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                            const SolidCounts& now, const Progress& progress) {
+    return Limiter(field, refine, limits, smallestPart, progress).run(now);
 }
 
 }  // namespace isowave

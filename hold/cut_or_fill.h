@@ -40,5 +40,8 @@ struct TopologyEdits {
 // between two edits).
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const Progress& progress = {});
+// The same for a mesh that was counted. REQUIRES: now == meshedCounts(field, refine, smallestPart).
+TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                            const SolidCounts& now, const Progress& progress);
 
 }  // namespace isowave

@@ -37,7 +37,9 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                 LevelReport& report, const Progress& progress) {
     if (!limits.any()) return;
-    const TopologyEdits edits = limitTopology(field, refine, limits, smallestPart, progress);
+    const MeshTopology& now = report.topology;
+    const TopologyEdits edits =
+        limitTopology(field, refine, limits, smallestPart, {now.parts, now.genus, now.cavities}, progress);
     for (const TopologyEdit& edit : edits.edits)
         report.edits.push_back({edit.kind == TopologyEdit::Kind::fill,
                                 featureOf(edit.what),

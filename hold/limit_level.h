@@ -14,7 +14,8 @@ namespace isowave {
 SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCounts>& before = {});
 
 // limitTopology() (hold/cut_or_fill.h) at F = 0; puts edits, and what of the limits is missed, into the report. The field is the level's own
-// copy: the pyramid stays as it is. Without limits nothing is counted.
+// copy: the pyramid stays as it is. The report has the counts of the level's
+// mesh as it is.
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                 LevelReport& report, const Progress& progress);
 

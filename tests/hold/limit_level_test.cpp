@@ -2,13 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include "isowave/measure.h"
 #include "polygonize/fields.h"
+#include "polygonize/polygonize.h"
 
 namespace isowave {
 namespace {
 
 using testing::fieldFromDistance;
 using testing::torus;
+
+LevelReport counted(const BSplineField& field) {
+    LevelReport report;
+    report.topology = topologyOf(polygonize(field));
+    return report;
+}
 
 TEST(LimitLevel, TakesTheLowerOfOptionAndLevelBefore) {
     LevelOptions options;
@@ -25,7 +33,7 @@ TEST(LimitLevel, TakesTheLowerOfOptionAndLevelBefore) {
 
 TEST(LimitLevel, TellsOfItsEdits) {
     BSplineField field = fieldFromDistance(16, torus(5, 3.4));
-    LevelReport report;
+    LevelReport report = counted(field);
     limitLevel(field, 1, {.handles = 0}, 0, report, {});
     ASSERT_EQ(report.edits.size(), 1u);
     EXPECT_TRUE(report.edits[0].fill);
@@ -36,7 +44,7 @@ TEST(LimitLevel, TellsOfItsEdits) {
 
 TEST(LimitLevel, SaysWhatIsMissed) {
     BSplineField field = fieldFromDistance(16, torus(8, 3));
-    LevelReport report;
+    LevelReport report = counted(field);
     limitLevel(field, 1, {.parts = 0}, 0, report, {});  // the largest part stays
     ASSERT_TRUE(report.limitsMissed);
     EXPECT_NE(report.limitsMissed->find("1 parts where 0 are allowed"), std::string::npos);
