@@ -424,6 +424,8 @@ def shapes():
     yield "mesh-solid/overlap", bytes([8, 0, 0, 1]) + box + tetrahedron
     yield "mesh-solid/nested", bytes([8, 0, 0, 1]) + box + bytes([1, 10, 10, 10, 6, 6, 6])
     yield "pyramid/renamed", bytes([0, 4, 9])
+    yield "packed/lossless", bytes([1, 0])
+    yield "packed/bounded", bytes([0, 0])
     yield "vdb/ball_blosc.vdb", (DATA / "vdb/ball_blosc.vdb").read_bytes()
 
 
