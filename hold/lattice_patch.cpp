@@ -1,7 +1,10 @@
 #include "hold/lattice_patch.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
+#include <vector>
 
 #include "polygonize/cell_decision.h"
 
@@ -68,6 +71,70 @@ LatticeFunction toFloats(const Dense& d) {
     return {d.size, std::vector<float>(d.values.begin(), d.values.end())};
 }
 
+// Lattice points of one sign that follow each other along z.
+struct Run {
+    int begin, end;
+    bool inside;
+    std::uint32_t parent;
+    bool atBorder;
+};
+
+// Pieces of one sign, joined across faces, edges and corners: runs row by row, each joined to those of the four rows before.
+class Pieces {
+  public:
+    explicit Pieces(const LatticeFunction& f) : size_(f.size) {
+        for (int x = 0; x < size_[0]; ++x)
+            for (int y = 0; y < size_[1]; ++y) addRow(f, x, y);
+        first_.push_back(count());
+        for (int x = 0; x < size_[0]; ++x)
+            for (int y = 0; y < size_[1]; ++y)
+                for (const auto& [dx, dy] : {std::pair{0, -1}, {-1, -1}, {-1, 0}, {-1, 1}})
+                    if (x + dx >= 0 && y + dy >= 0 && y + dy < size_[1]) join(row(x, y), row(x + dx, y + dy));
+    }
+    std::int64_t closed() {
+        for (std::uint32_t r = 0; r < count(); ++r)
+            if (runs_[r].atBorder) runs_[rootOf(r)].atBorder = true;
+        std::int64_t closed = 0;
+        for (std::uint32_t r = 0; r < count(); ++r) closed += runs_[r].parent == r && !runs_[r].atBorder;
+        return closed;
+    }
+
+  private:
+    std::uint32_t count() const { return static_cast<std::uint32_t>(runs_.size()); }
+    std::size_t row(int x, int y) const { return static_cast<std::size_t>(x) * size_[1] + y; }
+    void addRow(const LatticeFunction& f, int x, int y) {
+        first_.push_back(count());
+        const float* values = &f.values[f.index(x, y, 0)];
+        const bool outermost = x == 0 || y == 0 || x + 1 == size_[0] || y + 1 == size_[1];
+        for (int z = 0, next; z < size_[2]; z = next) {
+            const bool inside = values[z] < 0;
+            for (next = z + 1; next < size_[2] && (values[next] < 0) == inside;) ++next;
+            runs_.push_back({z, next, inside, count(), outermost || z == 0 || next == size_[2]});
+        }
+    }
+    void join(std::size_t a, std::size_t b) {
+        for (std::uint32_t i = first_[a], j = first_[b]; i < first_[a + 1] && j < first_[b + 1];) {
+            const bool touch = runs_[i].begin <= runs_[j].end && runs_[j].begin <= runs_[i].end;
+            if (touch && runs_[i].inside == runs_[j].inside) unite(i, j);
+            const bool endTogether = runs_[i].end == runs_[j].end && i + 1 < first_[a + 1];
+            if (endTogether && runs_[i + 1].inside == runs_[j].inside) unite(i + 1, j);  // across a corner
+            ++(runs_[i].end < runs_[j].end ? i : j);
+        }
+    }
+    std::uint32_t rootOf(std::uint32_t r) {
+        while (runs_[r].parent != r) r = runs_[r].parent = runs_[runs_[r].parent].parent;
+        return r;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) {
+        a = rootOf(a), b = rootOf(b);
+        runs_[std::max(a, b)].parent = std::min(a, b);
+    }
+
+    Coord size_;
+    std::vector<Run> runs_;
+    std::vector<std::uint32_t> first_;  // of each row
+};
+
 }  // namespace
 
 LatticePatch::LatticePatch(const LatticeFunction& controlPoints, const Coord& low, int refine) {
@@ -105,6 +172,8 @@ void LatticePatch::countCell(const Coord& low, Count& count) const {
     count.triangles += static_cast<std::int64_t>(chosen.triangles.size());
     count.vertices += std::popcount(chosen.rays);
 }
+
+std::int64_t LatticePatch::closedPieces() const { return Pieces(lattice_.function).closed(); }
 
 std::int64_t LatticePatch::twiceEuler() const {
     Count count;

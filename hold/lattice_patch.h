@@ -22,6 +22,10 @@ class LatticePatch {
     // changes by as much as this does when F changes in the patch alone, two lattice points or more from its border.
     std::int64_t twiceEuler() const;
 
+    // Pieces of the inside and of the outside that lie in the patch as a whole, joined across corners, too: whatever faces and cells decide,
+    // the mesh has a component around each that is not joined to what is around it.
+    std::int64_t closedPieces() const;
+
   private:
     struct Count {
         std::int64_t vertices = 0, triangles = 0;

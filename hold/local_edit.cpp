@@ -138,7 +138,7 @@ bool EditTrial::mustKeep(const Coord& c, bool thicker) const {
 
 std::optional<LocalEdit> EditTrial::attempt(const EditManner& manner, std::optional<int> euler) {
     if (!solve(manner, kFar * step_)) solve(manner, std::numeric_limits<double>::infinity());
-    if (euler && patchAfter_.twiceEuler() - patchBefore_.twiceEuler() != 2 * *euler) return {};
+    if (euler && !changesEulerBy(*euler)) return {};
     LocalEdit edit;
     edit.box = box_;
     for (auto known = local_.controlPoints->cbeginValueOn(); known; ++known)
@@ -154,6 +154,14 @@ std::optional<LocalEdit> EditTrial::attempt(const EditManner& manner, std::optio
     edit.volume = after - *volumeBefore_;
     edit.moved = moved();
     return edit;
+}
+
+// A speck or a bubble that comes or goes changes it, too: by that of a ball, which is not what is asked for.
+bool EditTrial::changesEulerBy(int euler) const {
+    constexpr std::int64_t kTwiceOfBall = 4;
+    const std::int64_t change = patchAfter_.twiceEuler() - patchBefore_.twiceEuler() - 2 * euler;
+    return change % kTwiceOfBall == 0 &&
+           change == kTwiceOfBall * (patchAfter_.closedPieces() - patchBefore_.closedPieces());
 }
 
 double EditTrial::moved() const {

@@ -43,7 +43,8 @@ class EditTrial {
     EditTrial(const BSplineField& field, int refine, const EditPlan& plan);
 
     // The least change (volume/row_ascent.h) of the control points within reach of the plan's points; nothing where no change is needed, or
-    // where the Euler number of the mesh of polygonize(field, refine) does not change by `euler`. Volume and Euler number are exact:
+    // where the Euler number of the mesh of polygonize(field, refine), less that of specks and bubbles around, does not change by
+    // `euler`. Volume and Euler number are exact:
     // the surroundings before and after are cut out in the same way.
     std::optional<LocalEdit> attempt(const EditManner& manner, std::optional<int> euler = {});
 
@@ -61,6 +62,7 @@ class EditTrial {
     void startBeyond(double margin);
     bool solve(const EditManner& manner, double far);
     bool keepsFar(const EditManner& manner, double far) const;
+    bool changesEulerBy(int euler) const;
     double moved() const;
     std::vector<FieldRow> rows(const EditManner& manner, double far) const;
     FieldRow keptSign(const openvdb::Vec3d& at, double f) const;

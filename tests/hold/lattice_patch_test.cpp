@@ -48,5 +48,47 @@ TEST(LatticePatch, CountsTheEulerNumberOfTheMesh) {
         }
 }
 
+// Pieces of one sign that do not reach the border, by flooding from point to point.
+std::int64_t floodedPieces(const LatticeFunction& f) {
+    std::vector<bool> seen(f.values.size());
+    std::int64_t closed = 0;
+    for (std::size_t start = 0; start < seen.size(); ++start) {
+        if (seen[start]) continue;
+        std::vector<std::int64_t> points{static_cast<std::int64_t>(start)};
+        seen[start] = true;
+        bool atBorder = false;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Coord c = f.point(points[i]);
+            for (int n = 0; n < 27; ++n) {
+                const Coord next = c.offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+                bool beyond = false;
+                for (int a = 0; a < 3; ++a) beyond = beyond || next[a] < 0 || next[a] >= f.size[a];
+                atBorder = atBorder || beyond;
+                if (beyond) continue;
+                const std::int64_t at = f.index(next[0], next[1], next[2]);
+                if (seen[at] || (f.values[at] < 0) != (f.values[start] < 0)) continue;
+                seen[at] = true;
+                points.push_back(at);
+            }
+        }
+        closed += !atBorder;
+    }
+    return closed;
+}
+
+TEST(LatticePatch, CountsThePiecesThatLieInItAsAWhole) {
+    std::int64_t found = 0;
+    for (int seed = 1; seed <= 30; ++seed) {
+        const LatticePatch patch = patchOf(noiseField(3 + seed % 6, seed), seed % 3 == 0   ? 1
+                                                                           : seed % 3 == 1 ? 2
+                                                                                           : 4);
+        const std::int64_t pieces = floodedPieces(patch.lattice().function);
+        EXPECT_EQ(patch.closedPieces(), pieces) << seed;
+        found += pieces;
+    }
+    EXPECT_GT(found, 30);
+    EXPECT_EQ(patchOf(fieldFromDistance(16, torus(5, 2)), 2).closedPieces(), 1);
+}
+
 }  // namespace
 }  // namespace isowave
