@@ -15,6 +15,14 @@ struct Shape {
     std::vector<Segment> boundary;  // lattice coordinates, any order; only fitDistance needs it
 };
 
+// An input that was fitted: level 0, and how it was made.
+struct Fitted {
+    RowField<float> field;
+    Fit method = Fit::distance;
+    double halfWidth = 0, band = 0;  // pixels; of the distance fit
+    FitReport report;
+};
+
 // Both fits shift the lattice where control points would lie below -1 on an axis, so that the first one lies at -1, and
 // move the frame the other way: the pyramid of every such field ends at a single node. World coordinates stay.
 
