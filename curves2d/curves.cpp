@@ -10,6 +10,7 @@
 
 #include "base/read_file.h"
 #include "curves2d/bitmap_shape.h"
+#include "curves2d/edit/edit.h"
 #include "curves2d/file/pyramid_file.h"
 #include "curves2d/fit.h"
 #include "curves2d/ladder.h"
@@ -176,6 +177,25 @@ Input fitted(Input input, const LadderOptions& options, const Progress& progress
     if (input.fitted) return input;
     input.fitted = std::make_shared<Fitted>(fit(input, options, progress));
     input.shape.reset();
+    return input;
+}
+
+Input edited(Input input, const PolygonEdit& edit, const std::string& name, const Progress& progress) {
+    assert(input.fitted && 0 <= edit.level && edit.level <= 20);
+    std::optional<Fitted> result;
+    try {
+        result = editedFit(*input.fitted, edit, progress);
+    } catch (const InputError& error) {
+        throw InputError(name, error.what());
+    }
+    if (!result)
+        throw InputError(name, edit.cut ? "cuts nothing away: it lies outside the shape"
+                                        : "adds nothing: it lies inside the shape");
+    input.fitted = std::make_shared<const Fitted>(std::move(*result));
+    if (!edit.cut)
+        for (const Polygon& polygon : edit.polygons)
+            for (const Ring& ring : polygon.rings)
+                for (const Point& p : ring) input.extent.take(p);
     return input;
 }
 

@@ -50,6 +50,11 @@ template <class Real>
 RowField<Real> fitDistance(const Shape& shape, const DistanceFitOptions& options = {},
                            FitReport* report = nullptr, const Progress& progress = {});
 
+// The last pass of both fits: changes control points until the spline has the sign of `inside` at every known lattice point, by
+// the margin of the method. halfWidth: of the distance fit, in pixels.
+void repairSigns(RowField<float>& field, const Region& inside, Fit method, double halfWidth,
+                 FitReport& report, const Progress& progress = {});
+
 // The passes that decide which control points are known: the nodes (unit squares, by their lower corner) whose corner
 // signs differ, and I around a set of nodes.
 Region stabbedNodes(const Region& inside);

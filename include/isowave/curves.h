@@ -301,6 +301,19 @@ struct Ladder {
 // that is fitted stays as it is.
 ISOWAVE_EXPORT Input fitted(Input input, const LadderOptions& options = {}, const Progress& progress = {});
 
+// Polygons that are added to a shape, or cut out of it. The tool is sampled on the lattice of `level`: its corners are as round
+// as the curves of that level are, and its straight edges are where they should be.
+struct PolygonEdit {
+    bool cut = false;
+    std::vector<Polygon> polygons;
+    int level = 0;
+};
+// A fitted input with an edit: level 0 as it is away from the tool, to the bit, and every coarser level follows from it.
+// REQUIRES: input.fitted; 0 <= level <= 20. name: of the tool, for messages. Throws InputError: the tool covers no pixel's
+// middle at its level, it changes nothing, nothing would be left.
+ISOWAVE_EXPORT Input edited(Input input, const PolygonEdit& edit, const std::string& name = "tool",
+                            const Progress& progress = {});
+
 // The file of a pyramid (.iwc): level 0 of a fitted input to the bit, compressed, from which every step follows, and what of
 // the input the curves need. makeLadder() of readInput() of it gives the curves of the input itself, to the bit.
 // REQUIRES: input.fitted. savePyramid() throws OperationError; the file appears whole or not at all.

@@ -155,6 +155,9 @@ def curves(
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
     band: Optional[float] = None,
+    add: Union[None, PathLike, Sequence[PathLike]] = None,
+    cut: Union[None, PathLike, Sequence[PathLike]] = None,
+    edit_level: Optional[int] = None,
     pyramid: Optional[PathLike] = None,
     threads: Optional[int] = None,
     progress: Optional[ProgressLike] = None,
@@ -163,6 +166,9 @@ def curves(
 
     source: a path (PNG, TIFF, GeoJSON, a pyramid .iwc, ...), a picture (rows, columns) of any numbers, a list of polygons, each a list of
     rings (N, 2), or an object with ``__geo_interface__`` (shapely).
+
+    add, cut: files of polygons that are united with what was fitted, or taken away; all are added before any is cut.
+    pyramid: a file (.iwc) that gets what was fitted, to be given as source again.
 
     Coordinates are the input's; of a picture pixels, (0, 0) in the middle of the first one, y pointing down.
 
@@ -174,7 +180,7 @@ def curves(
     (1, False, 2)
     """
     options = given(levels=levels, steps=steps, hold=hold, smooth=smooth, flatness=flatness, iso=iso, pixels=pixels, invert=invert,
-                    fit=fit, half_width=half_width, band=band,
+                    fit=fit, half_width=half_width, band=band, add=add, cut=cut, edit_level=edit_level,
                     pyramid=None if pyramid is None else os.fspath(pyramid))  # fmt: skip
     watch = Watch(progress, threads)
     if is_path(source):

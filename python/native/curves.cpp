@@ -26,6 +26,7 @@ struct Choices : tools::CurveOptions {
         declareDrawing(options);
         declareInput(options);
         declareFit(options);
+        declareEdits(options);
         declarePyramid(options);
     }
 };
@@ -63,11 +64,11 @@ CurvesPointer climb(Input input, const std::string& name, const Choices& choices
     for (const std::string& remark : choices.remarks()) progress.say(remark);
     std::optional<tools::ResultFile> pyramid;
     if (choices.pyramid) {
-        tools::Inputs({name}).refuse(*choices.pyramid);
+        tools::Inputs(choices.inputs(name)).refuse(*choices.pyramid);
         pyramid.emplace(*choices.pyramid);
-        input = fitted(std::move(input), choices.ladder(), progress);
-        pyramid->write(pyramidBytes(input));
     }
+    input = choices.prepared(std::move(input), progress);
+    if (pyramid) pyramid->write(pyramidBytes(input));
     made->view = viewOf(input);
     made->report.path = name;
     made->report.kind = input.kind;

@@ -92,6 +92,18 @@ def test_a_pyramid_takes_the_place_of_its_input(tmp_path):
         isowave.curves(tmp_path / "cut.iwc")
 
 
+def test_edits_are_those_of_the_command(tmp_path):
+    (tmp_path / "square.txt").write_text("20 0\n60 0\n60 20\n20 20\n")
+    (tmp_path / "small.txt").write_text("21 1\n25 1\n25 5\n21 5\n")
+    square, small = tmp_path / "square.txt", tmp_path / "small.txt"
+    ladder = isowave.curves(AFRICA, pixels=128, add=square, cut=[small], edit_level=1, levels=(0, 2))
+    words = ["--pixels", 128, "--add", square, "--cut", small, "--edit-level", 1, "--levels", "0..2"]
+    assert stable(ladder.report) == stable(command_curves(tmp_path, AFRICA, *words))
+    (tmp_path / "far.txt").write_text("900 900\n950 900\n950 950\n")
+    with pytest.raises(isowave.InputError, match="far.txt: cuts nothing away"):
+        isowave.curves(square, cut=tmp_path / "far.txt")
+
+
 def test_errors(tmp_path):
     with pytest.raises(isowave.UsageError) as caught:
         isowave.curves(KEYRING, pixels=64)

@@ -193,6 +193,61 @@ TEST(CurvesCommand, RefusesWhatAPyramidHasNoUseFor) {
     }
 }
 
+TEST(CurvesCommand, AddsAndCutsPolygonsInTheirOrder) {
+    const Folder folder;
+    const auto write = [&](const char* name, const char* ring) {
+        std::ofstream(folder / name) << ring;
+        return (folder / name).string();
+    };
+    const std::string plate = write("plate.txt", "0 0\n100 0\n100 50\n0 50\n"),
+                      boss = write("boss.txt", "60 30\n90 30\n90 80\n60 80\n"),
+                      hole = write("hole.txt", "70 40\n80 40\n80 70\n70 70\n"),
+                      inner = write("inner.txt", "73 43\n77 43\n77 65\n73 65\n"),
+                      far = write("far.txt", "200 200\n210 200\n210 210\n");
+    const auto area = [&](const std::string& input, const Arguments& more) {
+        Arguments all{"--levels", "0", "--json", (folder / "r.json").string()};
+        all.insert(all.end(), more.begin(), more.end());
+        const Result result = isowave(curves(input, folder, all));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return jsonFile(folder / "r.json")["steps"][0]["area"].get<double>();
+    };
+    const std::string pyramid = (folder / "p.iwc").string();
+    const double plain = area(plate, {"--pixels", "400", "--pyramid", pyramid});
+    EXPECT_NEAR(plain, 5000, 10);
+    EXPECT_NEAR(area(plate, {"--pixels", "400", "--add", boss, "--cut", hole}), 5000 + 900 - 300, 15);
+    EXPECT_NEAR(area(plate, {"--pixels", "400", "--cut", hole, "--add", boss}), 5000 + 900, 15);
+    const std::string edited = (folder / "q.iwc").string();
+    EXPECT_NEAR(area(pyramid, {"--add", boss, "--cut", hole, "--edit-level", "2", "--pyramid", edited}), 5600,
+                30);
+    EXPECT_NEAR(area(edited, {}), 5600, 30);
+    const auto before = folder.snapshot();
+    const struct {
+        Arguments more;
+        int code;
+        const char* says;
+    } cases[] = {{{"--cut", far}, 3, "far.txt: cuts nothing away"},
+                 {{"--cut", plate}, 0, ""},
+                 {{"--add", hole, "--add", inner}, 3, "inner.txt: adds nothing"},
+                 {{"--edit-level", "1"}, 2, "--edit-level: belongs to --add and --cut"},
+                 {{"--add", boss, "--edit-level", "-1"}, 2, "--edit-level"},
+                 {{"--add", (folder / "none.txt").string()}, 3, "none.txt"},
+                 {{"--add", boss, "--pyramid", boss}, 2, "boss.txt"}};
+    for (const auto& bad : cases) {
+        Arguments all{"curves", edited, "-o", (folder / "new/x").string()};
+        all.insert(all.end(), bad.more.begin(), bad.more.end());
+        const Result result = isowave(all);
+        if (bad.code == 0) {
+            EXPECT_EQ(result.exitCode, 0) << result.err;  // the rest of the boss is left
+            fs::remove_all(folder / "new");
+            continue;
+        }
+        EXPECT_EQ(result.exitCode, bad.code) << bad.says << result.err;
+        EXPECT_THAT(result.err, HasSubstr(bad.says));
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_EQ(folder.snapshot(), before) << bad.says;
+    }
+}
+
 struct Bad {
     std::string name, content;
     Arguments more;

@@ -58,6 +58,39 @@ void CurveOptions::declareFit(OptionList& options) {
                   [this](const std::string& v) { band = positive(v); });
 }
 
+void CurveOptions::declareEdits(OptionList& options) {
+    for (const bool cut : {false, true})
+        options.values(
+            cut ? "--cut" : "--add", "FILE",
+            cut ? "take these polygons away from what was fitted; may be given several times"
+                : "add these polygons to what was fitted, before the ladder is climbed; may be given several "
+                  "times, in any order with --cut",
+            [this, cut](const std::string& v) {
+                edits.push_back({cut, v});
+            });
+    options.value("--edit-level", "L", "0",
+                  "polygons of --add and --cut are as fine as level L: sampled on its lattice",
+                  [this](const std::string& v) { editLevel = static_cast<int>(integer(v, 0, 20)); });
+}
+
+std::vector<std::filesystem::path> CurveOptions::inputs(const std::filesystem::path& input) const {
+    std::vector<std::filesystem::path> all{input};
+    for (const Edit& edit : edits) all.push_back(edit.file);
+    return all;
+}
+
+curves2d::Input CurveOptions::prepared(curves2d::Input input, const Progress& progress) const {
+    if (edits.empty() && !pyramid) return input;
+    input = curves2d::fitted(std::move(input), ladder(), progress);
+    for (const Edit& edit : edits) {
+        const curves2d::PolygonInput tool = curves2d::readPolygons(edit.file);
+        for (const std::string& remark : tool.remarks) progress.say(edit.file.string() + ": " + remark);
+        input = curves2d::edited(std::move(input), {edit.cut, tool.polygons, editLevel.value_or(0)},
+                                 edit.file.string(), progress);
+    }
+    return input;
+}
+
 void CurveOptions::declarePyramid(OptionList& options) {
     options.result("--pyramid", "FILE",
                    "the fitted input, losslessly compressed, which curves takes in place of INPUT (.iwc)",
@@ -78,6 +111,7 @@ curves2d::LadderOptions CurveOptions::ladder() const {
     if (pyramid && !curves2d::isPyramidPath(*pyramid))
         throw UsageError("--pyramid: '" + pyramid->string() +
                          "' does not end in .iwc, which tells a pyramid");
+    if (editLevel && edits.empty()) throw UsageError("--edit-level: belongs to --add and --cut");
     curves2d::LadderOptions options;
     options.fit = fit;
     if (halfWidth) options.halfWidth = *halfWidth;

@@ -135,6 +135,7 @@ CurvesCommand::CurvesCommand()
     declareJson();
     curves_.declareInput(options_);
     curves_.declareFit(options_);
+    curves_.declareEdits(options_);
     declareThreads();
     declareTalk();
 }
@@ -167,10 +168,8 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, ResultFile* pyramid, Consol
     curves2d::Input input = curves2d::readInput(arguments[0], curves_.input(), console.progress());
     for (const std::string& remark : input.remarks) console.say(remark);
     for (const std::string& remark : curves_.remarks()) console.say(remark);
-    if (pyramid) {
-        input = curves2d::fitted(std::move(input), curves_.ladder(), console.progress());
-        pyramid->write(curves2d::pyramidBytes(input));
-    }
+    input = curves_.prepared(std::move(input), console.progress());
+    if (pyramid) pyramid->write(curves2d::pyramidBytes(input));
     CurvesReport report;
     report.path = arguments[0].string();
     report.kind = input.kind;
@@ -203,7 +202,9 @@ void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out,
 
 int CurvesCommand::run(Console& console) {
     refuseContradictions();
-    OutputFolder out(*output_, Inputs(arguments));
+    const Inputs inputs(curves_.inputs(arguments[0]));
+    for (const auto& place : options_.results()) inputs.refuse(place);
+    OutputFolder out(*output_, inputs);
     if (jsonToFile()) out.keepFree(*json_);
     for (const auto& place : {draw_.sheet, curves_.pyramid})
         if (place) out.keepFree(*place);
