@@ -137,7 +137,7 @@ class Packer {
         facts.chunks = static_cast<int>(chunks_.size());
         facts.points = static_cast<std::int64_t>(head_.points);
         facts.delta = head_.quantised ? head_.quantised->delta : 0;
-        return fileOf(sections);
+        return fileOf(kPackedFormat, sections);
     }
 
   private:
@@ -234,7 +234,7 @@ void decodeValues(const Head& head, const std::vector<Section>& sections, std::s
 }
 
 Unpacked unpackPoints(std::string_view bytes, double mostPoints, const Progress& progress) {
-    const std::vector<Section> sections = sectionsOf(bytes);
+    const std::vector<Section> sections = sectionsOf(kPackedFormat, bytes);
     Unpacked u{headOf(contentOf(sections, 0, SectionKind::head)), {}};
     const Head& head = u.head;
     if (static_cast<double>(head.points) > mostPoints)

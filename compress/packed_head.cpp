@@ -102,11 +102,11 @@ std::string bytesOf(const Head& head) {
         writer.text(key);
         writer.text(value);
     }
-    return deflated(writer.str());
+    return deflatedHead(writer.str());
 }
 
 Head headOf(std::string_view bytes) {
-    const std::string content = inflated(bytes);
+    const std::string content = inflatedHead(bytes);
     ByteReader reader(content);
     Head head;
     head.K = reader.f64();

@@ -8,7 +8,10 @@
 #include <tuple>
 #include <utility>
 
+#include "base/read_file.h"
 #include "curves2d/bitmap_shape.h"
+#include "curves2d/edit/edit.h"
+#include "curves2d/file/pyramid_file.h"
 #include "curves2d/fit.h"
 #include "curves2d/ladder.h"
 #include "curves2d/polygon_input.h"
@@ -133,6 +136,7 @@ Input polygonInput(const std::vector<Polygon>& polygons, const InputOptions& opt
 Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
     progress("reading", 0);
     if (!std::filesystem::exists(path)) throw InputError(path.string(), "there is no such file");
+    if (isPyramidPath(path)) return readPyramid(readFile(path, "a pyramid of curves"), path.string());
     if (!looksLikePolygons(path)) return inputOf(readBitmap(path), options, path.string());
     const PolygonInput polygons = readPolygons(path);
     Input input = polygonInput(polygons.polygons, options, progress, path.string());
@@ -152,27 +156,65 @@ Panel LadderStep::panel(const View& view) const {
     return {name(), refined(field_, traced_, kSheetTolerance * std::max(size.x, size.y))};
 }
 
-Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor& visit,
-                  const Progress& progress) {
+namespace {
+
+Fitted fit(const Input& input, const LadderOptions& options, const Progress& progress) {
     DistanceFitOptions distance;
     distance.halfWidth = options.halfWidth;
     distance.band = options.band.value_or(std::min(distance.band, options.halfWidth));
     assert(0 < distance.band && distance.band <= distance.halfWidth);
-    const Fit method = options.fit.value_or(input.fit);
-    FitReport report;
-    RowField<float> field = fit(*input.shape, method, distance, &report, progress);
+    Fitted made;
+    made.method = options.fit.value_or(input.fit);
+    made.halfWidth = distance.halfWidth;
+    made.band = distance.band;
+    made.field = fit(*input.shape, made.method, distance, &made.report, progress);
+    return made;
+}
+
+}  // namespace
+
+Input fitted(Input input, const LadderOptions& options, const Progress& progress) {
+    if (input.fitted) return input;
+    input.fitted = std::make_shared<Fitted>(fit(input, options, progress));
+    input.shape.reset();
+    return input;
+}
+
+Input edited(Input input, const PolygonEdit& edit, const std::string& name, const Progress& progress) {
+    assert(input.fitted && 0 <= edit.level && edit.level <= 20);
+    std::optional<Fitted> result;
+    try {
+        result = editedFit(*input.fitted, edit, progress);
+    } catch (const InputError& error) {
+        throw InputError(name, error.what());
+    }
+    if (!result)
+        throw InputError(name, edit.cut ? "cuts nothing away: it lies outside the shape"
+                                        : "adds nothing: it lies inside the shape");
+    input.fitted = std::make_shared<const Fitted>(std::move(*result));
+    if (!edit.cut)
+        for (const Polygon& polygon : edit.polygons)
+            for (const Ring& ring : polygon.rings)
+                for (const Point& p : ring) input.extent.take(p);
+    return input;
+}
+
+Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor& visit,
+                  const Progress& progress) {
+    Fitted level0 = input.fitted ? *input.fitted : fit(input, options, progress);
     input.shape.reset();  // as large as the field
+    input.fitted.reset();
 
     const auto onStep = [&](const StepFacts& facts, const RowField<float>& f, const Curves& curves,
                             const Curves& traced) {
         if (visit && facts.step >= options.firstStep)
             visit(LadderStep(facts, curves, traced, f, input.pixel));
     };
-    Ladder ladder = traceSteps(std::move(field), options.lastStep, options.hold, onStep, progress);
-    ladder.fit = method;
-    ladder.halfWidth = distance.halfWidth;
-    ladder.band = distance.band;
-    ladder.fitReport = report;
+    Ladder ladder = traceSteps(std::move(level0.field), options.lastStep, options.hold, onStep, progress);
+    ladder.fit = level0.method;
+    ladder.halfWidth = level0.halfWidth;
+    ladder.band = level0.band;
+    ladder.fitReport = level0.report;
     return ladder;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "curves2d/segment_tree.h"
+#include "curves2d/three_rows.h"
 
 namespace isowave::curves2d {
 namespace {
@@ -69,37 +70,6 @@ void forEachCapsuleRow(const Segment& s, double radius, const F& f) {
     }
 }
 
-// A region with room for rows first .. last.
-Region withRows(std::int32_t first, std::int32_t last) {
-    Region region;
-    region.firstRow = first;
-    region.rows.resize(static_cast<std::size_t>(std::max(0, last - first + 1)));
-    return region;
-}
-
-Region uniteRegions(const Region& a, const Region& b) {
-    if (a.rows.empty()) return b;
-    if (b.rows.empty()) return a;
-    Region out = withRows(std::min(a.firstRow, b.firstRow), std::max(a.endRow(), b.endRow()) - 1);
-    for (std::int32_t y = out.firstRow; y < out.endRow(); ++y)
-        out.rows[static_cast<std::size_t>(y - out.firstRow)] = unite(a.row(y), b.row(y));
-    return out;
-}
-
-// Grown by before/after on both axes.
-Region dilatedRegion(const Region& region, std::int32_t before, std::int32_t after) {
-    if (region.rows.empty()) return region;
-    Region out = withRows(region.firstRow - before, region.endRow() - 1 + after);
-    for (std::int32_t y = out.firstRow; y < out.endRow(); ++y) {
-        Spans spans;
-        for (std::int32_t from = y - after; from <= y + before; ++from)
-            spans.insert(spans.end(), region.row(from).begin(), region.row(from).end());
-        normalise(spans);
-        out.rows[static_cast<std::size_t>(y - out.firstRow)] = dilated(spans, before, after);
-    }
-    return out;
-}
-
 // Nodes with a corner nearer than `band` to the boundary.
 Region nodesNear(const std::vector<Segment>& segments, double band) {
     if (segments.empty()) return {};
@@ -118,7 +88,7 @@ Region nodesNear(const std::vector<Segment>& segments, double band) {
                 corners.rows[static_cast<std::size_t>(row - corners.firstRow)].push_back(span);
         });
     for (Spans& row : corners.rows) normalise(row);
-    return dilatedRegion(corners, 1, 0);
+    return dilated(corners, 1, 0);
 }
 
 // The part of the boundary that separates inside lattice points from outside ones: the pieces in stabbed nodes and in
@@ -126,7 +96,7 @@ Region nodesNear(const std::vector<Segment>& segments, double band) {
 // There the distance is 0 but the sign does not change, and the coarser levels of such a field would have specks (seen:
 // holes 500 pixels from the nearest coast, along a seam of the data).
 std::vector<Segment> separating(const std::vector<Segment>& boundary, const Region& stabbed) {
-    const Region near = dilatedRegion(stabbed, 1, 1);
+    const Region near = dilated(stabbed, 1, 1);
     std::vector<Segment> out;
     for (const Segment& s : boundary) {
         const int parts = std::max(1, static_cast<int>(std::ceil(length(s.b - s.a))));
@@ -195,38 +165,6 @@ RowField<Real> makeField(const Region& known, const Shape& shape, double K) {
         }
     }
     return field;
-}
-
-// Rows y-1, y, y+1 of a field, read together from left to right.
-template <class Real>
-class ThreeRows {
-  public:
-    template <class Field>
-    ThreeRows(const Field& field, std::int32_t y)
-        : below_(field.find(y - 1), field.K),
-          here_(field.find(y), field.K),
-          above_(field.find(y + 1), field.K) {}
-    // Positions first-1 .. last+1.
-    void read(std::int32_t first, std::int32_t last) {
-        for (auto* row : {&below, &here, &above}) row->resize(static_cast<std::size_t>(last - first + 3));
-        below_.read(first - 1, below);
-        here_.read(first - 1, here);
-        above_.read(first - 1, above);
-    }
-    std::vector<double> below, here, above;
-
-  private:
-    RowReader<Real> below_, here_, above_;
-};
-
-// centre c_i + side (c_{i-1} + c_{i+1}) on both axes: (4, 1)/6 gives the spline's values at lattice points,
-// (8, -1)/6 the control points of a quasi-interpolant. out[i] belongs to position first + i.
-template <class Real>
-void threeTaps(ThreeRows<Real>& rows, double centre, double side, std::vector<double>& out) {
-    std::vector<double>& e = rows.here;
-    for (std::size_t i = 0; i < e.size(); ++i) e[i] = centre * e[i] + side * (rows.below[i] + rows.above[i]);
-    out.resize(e.size() - 2);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = centre * e[i + 1] + side * (e[i] + e[i + 2]);
 }
 
 // New values for some rows of a field, computed from the old ones in parallel, then put in their place.
@@ -404,6 +342,15 @@ RowField<float> distances(const Region& where, const Shape& shape, double w, dou
 
 }  // namespace
 
+void repairSigns(RowField<float>& field, const Region& inside, Fit method, double halfWidth,
+                 FitReport& report, const Progress& progress) {
+    const Shape shape{field.frame, inside, {}};
+    if (method == Fit::binary)
+        finish(field, shape, kBinaryFloor, kBinaryTarget, &report, progress);
+    else
+        finish(field, shape, kDistanceFloor / halfWidth, kDistanceTarget / halfWidth, &report, progress);
+}
+
 // A node between rows y and y+1 is stabbed where the sign changes along either row or between them.
 Region stabbedNodes(const Region& inside) {
     Region nodes = withRows(inside.firstRow - 1, inside.endRow() - 1);
@@ -422,7 +369,7 @@ Region stabbedNodes(const Region& inside) {
     return nodes;
 }
 
-Region knownAround(const Region& nodes) { return dilatedRegion(nodes, 1, 2); }
+Region knownAround(const Region& nodes) { return dilated(nodes, 1, 2); }
 
 template <class Real>
 RowField<Real> fitBinary(const Shape& shape, const BinaryFitOptions& options, FitReport* report,
@@ -445,10 +392,10 @@ RowField<Real> fitDistance(const Shape& shape, const DistanceFitOptions& options
     progress("fitting", 0);
     const Region stabbed = stabbedNodes(shape.inside);
     Shape moved{shape.frame, shape.inside, separating(shape.boundary, stabbed)};
-    Region known = knownAround(uniteRegions(stabbed, nodesNear(moved.boundary, options.band)));
+    Region known = knownAround(unite(stabbed, nodesNear(moved.boundary, options.band)));
     moveOrigin(known, moved);
     const double w = options.halfWidth;
-    const RowField<float> v = distances(dilatedRegion(known, 1, 1), moved, w, options.K, progress);
+    const RowField<float> v = distances(dilated(known, 1, 1), moved, w, options.K, progress);
     RowField<Real> field = makeField<Real>(known, moved, options.K);
     updateRows(field, field.rowNumbers(), progress,
                [&](std::int32_t y, const Row<Real>& row, std::vector<Real>& values) {

@@ -15,6 +15,14 @@ struct Shape {
     std::vector<Segment> boundary;  // lattice coordinates, any order; only fitDistance needs it
 };
 
+// An input that was fitted: level 0, and how it was made.
+struct Fitted {
+    RowField<float> field;
+    Fit method = Fit::distance;
+    double halfWidth = 0, band = 0;  // pixels; of the distance fit
+    FitReport report;
+};
+
 // Both fits shift the lattice where control points would lie below -1 on an axis, so that the first one lies at -1, and
 // move the frame the other way: the pyramid of every such field ends at a single node. World coordinates stay.
 
@@ -41,6 +49,11 @@ RowField<Real> fitBinary(const Shape& shape, const BinaryFitOptions& options = {
 template <class Real>
 RowField<Real> fitDistance(const Shape& shape, const DistanceFitOptions& options = {},
                            FitReport* report = nullptr, const Progress& progress = {});
+
+// The last pass of both fits: changes control points until the spline has the sign of `inside` at every known lattice point, by
+// the margin of the method. halfWidth: of the distance fit, in pixels.
+void repairSigns(RowField<float>& field, const Region& inside, Fit method, double halfWidth,
+                 FitReport& report, const Progress& progress = {});
 
 // The passes that decide which control points are known: the nodes (unit squares, by their lower corner) whose corner
 // signs differ, and I around a set of nodes.

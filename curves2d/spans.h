@@ -22,6 +22,10 @@ void normalise(Spans& spans);
 // The union of two normal lists.
 Spans unite(const Spans& a, const Spans& b);
 
+// What lies in both; what lies in a and not in b.
+Spans intersection(const Spans& a, const Spans& b);
+Spans difference(const Spans& a, const Spans& b);
+
 // Every span grown by `left` to the left and `right` to the right; joined where they then overlap or touch.
 Spans dilated(const Spans& spans, std::int32_t left, std::int32_t right);
 
@@ -56,5 +60,11 @@ struct Region {
     bool empty() const;
     std::int64_t pointCount() const;
 };
+
+// A region with room for rows first .. last.
+Region withRows(std::int32_t first, std::int32_t last);
+Region unite(const Region& a, const Region& b);
+// Grown by before/after on both axes.
+Region dilated(const Region& region, std::int32_t before, std::int32_t after);
 
 }  // namespace isowave::curves2d

@@ -98,4 +98,21 @@ class OutputFile {
     MadeFolders parents_;
 };
 
+// The same with its bytes: written at once, put into its place by commit().
+class ResultFile {
+  public:
+    // Throws OperationError at once where it cannot be written.
+    explicit ResultFile(const std::filesystem::path& place) : folders_(place), file_(place) {}
+    // Throws OperationError: the disk is full.
+    void write(const std::string& bytes) { writeWhole(file_, bytes); }
+    void commit() {
+        file_.commit();
+        folders_.commit();
+    }
+
+  private:
+    OutputFile folders_;
+    AtomicFile file_;
+};
+
 }  // namespace isowave::tools

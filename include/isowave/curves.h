@@ -158,11 +158,13 @@ struct InputOptions {
     std::int32_t pixels = 1024;  // polygons: along the longer side
 };
 
-struct Shape;  // curves2d/fit.h: the lattice points inside, and the boundary between them
+struct Shape;   // curves2d/fit.h: the lattice points inside, and the boundary between them
+struct Fitted;  // curves2d/fit.h: level 0
 
-// An input, ready to be fitted.
+// An input, ready to be fitted, or fitted.
 struct Input {
-    std::shared_ptr<const Shape> shape;
+    std::shared_ptr<const Shape> shape;    // empty when it is fitted
+    std::shared_ptr<const Fitted> fitted;  // after fit(), or read from the file of a pyramid
     Box extent;        // the input's coordinates: of the image with half a pixel around, or of the polygons
     bool yUp = false;  // polygons; an image's y points down
     Fit fit = Fit::distance;           // what suits it: binary for masks, whose distances would be staircases
@@ -171,9 +173,9 @@ struct Input {
     double pixel = 1;                  // of level 0, in the input's unit
 };
 
-// Reads an image (PNG, TIFF, BMP, PGM, PBM) or polygons (GeoJSON, TopoJSON, text), told apart by the file's name.
-// Throws InputError: no such file, truncated, every pixel on one side, no ring of three points, a coordinate that is
-// no finite number, no pixel's middle inside.
+// Reads an image (PNG, TIFF, BMP, PGM, PBM), polygons (GeoJSON, TopoJSON, text) or a pyramid (.iwc, which needs no
+// options), told apart by the file's name. Throws InputError: no such file, truncated, damaged, every pixel on one side, no
+// ring of three points, a coordinate that is no finite number, no pixel's middle inside.
 ISOWAVE_EXPORT Input readInput(const std::filesystem::path& path, const InputOptions& options = {},
                                const Progress& progress = {});
 
@@ -295,9 +297,32 @@ struct Ladder {
     FitReport fitReport;
 };
 
+// The input with its fit, which is what takes the options `fit`, `halfWidth` and `band`: makeLadder() then only climbs. One
+// that is fitted stays as it is.
+ISOWAVE_EXPORT Input fitted(Input input, const LadderOptions& options = {}, const Progress& progress = {});
+
+// Polygons that are added to a shape, or cut out of it. The tool is sampled on the lattice of `level`: its corners are as round
+// as the curves of that level are, and its straight edges are where they should be.
+struct PolygonEdit {
+    bool cut = false;
+    std::vector<Polygon> polygons;
+    int level = 0;
+};
+// A fitted input with an edit: level 0 as it is away from the tool, to the bit, and every coarser level follows from it.
+// REQUIRES: input.fitted; 0 <= level <= 20. name: of the tool, for messages. Throws InputError: the tool covers no pixel's
+// middle at its level, it changes nothing, nothing would be left.
+ISOWAVE_EXPORT Input edited(Input input, const PolygonEdit& edit, const std::string& name = "tool",
+                            const Progress& progress = {});
+
+// The file of a pyramid (.iwc): level 0 of a fitted input to the bit, compressed, from which every step follows, and what of
+// the input the curves need. makeLadder() of readInput() of it gives the curves of the input itself, to the bit.
+// REQUIRES: input.fitted. savePyramid() throws OperationError; the file appears whole or not at all.
+ISOWAVE_EXPORT std::string pyramidBytes(const Input& input);
+ISOWAVE_EXPORT void savePyramid(const std::filesystem::path& path, const Input& input);
+
 using LadderVisitor = std::function<void(const LadderStep& step)>;
 
-// Fits the input and visits the curves of every step, the finest first. `input` is let go of as soon as it is fitted:
+// Fits the input, unless it is fitted, and visits the curves of every step, the finest first. `input` is let go of as soon as it is fitted:
 // move it in where memory counts. The same curves in the same order for any number of threads.
 // REQUIRES: 0 < band <= halfWidth.
 ISOWAVE_EXPORT Ladder makeLadder(Input input, const LadderOptions& options, const LadderVisitor& visit,

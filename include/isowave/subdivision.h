@@ -221,12 +221,20 @@ struct DecompositionReport {
     double diagonal = 0;                  // of the mesh
     double roundTrip = 0;                 // largest distance after reconstruction
     Positions positions =
-        Positions::control;     // of the base as it is written; all errors are of control positions
-    std::vector<Level> levels;  // the base first
+        Positions::control;             // of the base as it is written; all errors are of control positions
+    std::vector<Level> levels;          // the base first
+    std::size_t details = 0, kept = 0;  // kept: not 0, after dropDetails()
+    PointError dropped;                 // what the others have cost
 };
 // `mesh` is what `hierarchy` was made from.
 ISOWAVE_EXPORT DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const PolygonMesh& mesh,
                                                        const Progress& progress = {});
+
+// Leaves details shorter than `shortest` out of `hierarchy`, or all but the `count` longest, and measures what that costs
+// against `mesh`, which it was made from. saveHierarchy() then writes a smaller file.
+ISOWAVE_EXPORT void dropDetails(Hierarchy& hierarchy, const PolygonMesh& mesh, std::optional<double> shortest,
+                                std::optional<std::size_t> count, DecompositionReport& report,
+                                const Progress& progress = {});
 
 struct RebuildOptions {
     std::vector<Vec3> moved = {};  // the base's points after an edit; empty: where they were
@@ -329,6 +337,7 @@ struct CurveReportOptions {
     std::optional<std::size_t> keep = {};      // or: only this many of the longest stay
     Positions positions = Positions::control;  // of the curves that are returned
     bool compare = false;                      // the L2 errors of dlg-trial, dlg-refined, dlg-optimal too
+    bool details = false;                      // the bytes of a file of details too
 };
 
 struct CurveReport {
@@ -352,11 +361,56 @@ struct CurveReport {
         atLevel;                        // atLevel[k]: every curve at level k, or at the coarsest it has
     std::vector<Polyline> smooth;       // P alone on the coarsest level of each
     std::vector<Polyline> thresholded;  // when details were dropped
+    std::string details;                // curveDetailsBytes(), without the details that were dropped
 };
 
 // Takes curves apart as far as they go. Throws InputError when none of them has `levels` levels (and says how many
 // points are needed), and for limit positions of a mask that has none.
 ISOWAVE_EXPORT CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions& options);
+
+// Curves that were taken apart by one scheme, as far as each goes: what `curve-levels --details` writes.
+struct CurveSet {
+    std::string scheme;  // by name; of a mask of one's own empty
+    std::string mask = {};
+    int width = 0;   // of A for such a mask
+    int levels = 0;  // the most that a curve has
+    std::vector<CurveLevels> curves;
+};
+
+// One file (docs/interfaces.md, "Details of curves and heights"): coarse curves and details to the bit, compressed; dropped
+// details take next to nothing. loadCurveDetails() throws InputError: no such file, of another version, truncated, damaged.
+ISOWAVE_EXPORT std::string curveDetailsBytes(const CurveSet& set);
+ISOWAVE_EXPORT CurveSet loadCurveDetails(const std::filesystem::path& path);
+
+// What putting curves or heights together again comes to.
+struct LevelsRebuildReport {
+    int levels = 0;          // subdivisions
+    std::size_t pieces = 0;  // curves; 1 for heights
+    std::size_t points = 0;
+    std::size_t details = 0, kept = 0;  // of these levels; not 0
+    double extent = 0;                  // the diagonal of the box around all points; of heights their range
+    Positions positions = Positions::control;
+    PointError error;  // what leaving details out has cost, at control positions
+};
+
+struct CurveRebuildOptions {
+    std::vector<Polyline> moved = {};  // the coarse curves after an edit; empty: where they were
+    // local: at each point the details turn as the tangent there does, from the subdivided curve before the edit to that after
+    // it, before their details are added (Finkelstein and Salesin, "Multiresolution curves", 1994, section 4: details in the
+    // frame of the coarse curve). For curves in the plane. A rigid motion of the coarse curve then is one of every level.
+    Frames frames = Frames::global;
+    int depth = kAllLevels;                // subdivisions; 0: the coarse curves
+    std::optional<double> threshold = {};  // details shorter than this are left out
+    std::optional<std::size_t> keep = {};  // or: only this many of the longest of each curve stay
+    Positions positions = Positions::control;
+};
+struct RebuiltCurves {
+    std::vector<Polyline> curves;
+    LevelsRebuildReport report;
+};
+// Throws InputError: parts that do not belong together, an edited curve of another size, dimension or closing (which, and what
+// was expected), local frames in space.
+ISOWAVE_EXPORT RebuiltCurves rebuild(CurveSet set, const CurveRebuildOptions& options = {});
 
 // ---- grids of heights ----
 
@@ -386,6 +440,7 @@ struct ReliefReportOptions {
     int levels = 2;
     Positions positions = Positions::control;  // of the heights that are returned
     bool compare = false;                      // what the other schemes make of the relief without details
+    bool details = false;                      // the bytes of a file of details too; Rows only
 };
 
 // The relief at every level. Grids have the samples where they were: sample (r, c) of level k lies where (r 2^k, c 2^k) of
@@ -412,11 +467,41 @@ struct ReliefReport {
     Grid reconstructed;                      // level 0, from the coarsest level and all details
     Grid suppressed;                         // P alone from the coarsest level
     std::map<std::string, double> compared;  // suppressedRms of the coarsest level, by scheme
+    std::string details;                     // the file of details
 };
 
 // Throws InputError for an unknown scheme, when the grid is too small for so many levels, and for limit positions of a
 // loop-like scheme that does not converge.
 ISOWAVE_EXPORT ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options);
+
+// Heights from a file of details (`relief --details`), at any level, edited or simplified.
+struct ReliefRebuildOptions {
+    // The coarse heights after an edit, as large as coarseHeights(). What lies beyond the relief's own samples (Rows continues
+    // it) moves as the nearest of them does.
+    std::optional<Grid> edited = {};
+    int depth = kAllLevels;                // subdivisions; 0: the coarse heights
+    std::optional<double> threshold = {};  // details smaller than this are left out
+    std::optional<std::size_t> keep = {};  // or: only this many of the largest stay
+    Positions positions = Positions::control;
+};
+struct RebuiltRelief {
+    Grid heights;
+    LevelsRebuildReport report;
+};
+struct ReliefParts;  // subdivision/lattice/relief_details.h
+class ReliefDetails {
+  public:
+    // Throws InputError: no such file, of another version, truncated, damaged.
+    ISOWAVE_EXPORT static ReliefDetails load(const std::filesystem::path& path);
+    // level_K of `relief`, as it is written without --limit.
+    ISOWAVE_EXPORT Grid coarseHeights() const;
+    // Throws InputError for edited heights of another size, and what reconstruct() throws.
+    ISOWAVE_EXPORT RebuiltRelief rebuild(const ReliefRebuildOptions& options = {}) const;
+
+  private:
+    explicit ReliefDetails(std::shared_ptr<const ReliefParts> parts) : parts_(std::move(parts)) {}
+    std::shared_ptr<const ReliefParts> parts_;
+};
 
 // The pictures of a report, one after the other: level_K (grey by height), shade_K (lit from the upper left), details_K
 // (white: 0, black: the 99th percentile of |d| or more), suppressed, suppressed_shade. Values from `black` to `white`,

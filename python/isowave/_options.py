@@ -14,7 +14,7 @@ Given = list[tuple[str, str]]
 
 _BY_X = {"spacing", "size"}  # 0.9x0.9x1.5; other lists take commas
 _RANGES = {"levels", "steps"}
-_SEVERAL = {"fine"}  # an option for each of them
+_SEVERAL = {"fine", "add", "cut"}  # an option for each of them
 
 
 def _number(name: str, value: Any) -> str:

@@ -31,7 +31,7 @@ class Ring(NamedTuple):
 
 
 class CurveLevel:
-    """The curves of one level."""
+    """The curves of one level, or with ``steps`` of one step."""
 
     def __init__(self, ladder: CurveLadder, index: int, report: dict[str, Any]) -> None:
         self._native = ladder._native
@@ -40,8 +40,13 @@ class CurveLevel:
         self.report = report
 
     @property
-    def level(self) -> int:
-        return self._native.level(self._index)
+    def step(self) -> int:
+        return self._native.step(self._index)
+
+    @property
+    def level(self) -> Optional[int]:
+        """None for a step between two levels."""
+        return None if self.step % 2 else self.step // 2
 
     @property
     def rings(self) -> list[Ring]:
@@ -60,7 +65,8 @@ class CurveLevel:
         return self.text("svg")
 
     def __repr__(self) -> str:
-        return f"<isowave.CurveLevel: level {self.level}, {self.report['rings']} rings, {self.report['holes']} holes>"
+        name = f"step {self.step}" if self.level is None else f"level {self.level}"
+        return f"<isowave.CurveLevel: {name}, {self.report['rings']} rings, {self.report['holes']} holes>"
 
 
 def _write(path: PathLike, text: str) -> None:
@@ -68,15 +74,15 @@ def _write(path: PathLike, text: str) -> None:
 
 
 class CurveLadder(Sequence[CurveLevel]):
-    """Levels, finest first; one at which nothing is left is not among them."""
+    """Levels or steps, finest first; one at which nothing is left is not among them."""
 
     def __init__(self, native: _native.Curves, remarks: list[str]) -> None:
         self._native = native
         self.remarks = remarks
         #: What ``isowave curves --json`` writes.
         self.report: dict[str, Any] = json.loads(native.report())
-        by_level = {step["level"]: step for step in self.report["steps"] if step["level"] is not None}
-        self._levels = [CurveLevel(self, i, by_level[native.level(i)]) for i in range(len(native))]
+        by_step = {step["step"]: step for step in self.report["steps"]}
+        self._levels = [CurveLevel(self, i, by_step[native.step(i)]) for i in range(len(native))]
 
     def __len__(self) -> int:
         return len(self._levels)
@@ -97,7 +103,7 @@ class CurveLadder(Sequence[CurveLevel]):
     def _repr_html_(self) -> str:
         header = ["level", "outer rings", "holes", "points", "area", "rms to level 0", "max to level 0"]
         rows = [
-            [str(level.level)]
+            [f"{level.step // 2}{'a' if level.step % 2 else ''}"]
             + [grouped(level.report[key]) for key in ("rings", "holes", "points")]
             + [short(level.report[key]) for key in ("area", "rms_to_level0", "max_to_level0")]
             for level in self
@@ -139,6 +145,7 @@ def curves(
     source: Any,
     *,
     levels: Optional[Range] = None,
+    steps: Optional[Range] = None,
     hold: Optional[str] = None,
     smooth: bool = False,
     flatness: Optional[float] = None,
@@ -148,13 +155,20 @@ def curves(
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
     band: Optional[float] = None,
+    add: Union[None, PathLike, Sequence[PathLike]] = None,
+    cut: Union[None, PathLike, Sequence[PathLike]] = None,
+    edit_level: Optional[int] = None,
+    pyramid: Optional[PathLike] = None,
     threads: Optional[int] = None,
     progress: Optional[ProgressLike] = None,
 ) -> CurveLadder:
     """A bitmap or polygons -> closed curves, one set a level. Arguments are the options of ``isowave curves``.
 
-    source: a path (PNG, TIFF, GeoJSON, ...), a picture (rows, columns) of any numbers, a list of polygons, each a list of
+    source: a path (PNG, TIFF, GeoJSON, a pyramid .iwc, ...), a picture (rows, columns) of any numbers, a list of polygons, each a list of
     rings (N, 2), or an object with ``__geo_interface__`` (shapely).
+
+    add, cut: files of polygons that are united with what was fitted, or taken away; all are added before any is cut.
+    pyramid: a file (.iwc) that gets what was fitted, to be given as source again.
 
     Coordinates are the input's; of a picture pixels, (0, 0) in the middle of the first one, y pointing down.
 
@@ -165,8 +179,9 @@ def curves(
     >>> len(rings), rings[0].hole, rings[0].points.shape[1]
     (1, False, 2)
     """
-    options = given(levels=levels, hold=hold, smooth=smooth, flatness=flatness, iso=iso, pixels=pixels, invert=invert,
-                    fit=fit, half_width=half_width, band=band)  # fmt: skip
+    options = given(levels=levels, steps=steps, hold=hold, smooth=smooth, flatness=flatness, iso=iso, pixels=pixels, invert=invert,
+                    fit=fit, half_width=half_width, band=band, add=add, cut=cut, edit_level=edit_level,
+                    pyramid=None if pyramid is None else os.fspath(pyramid))  # fmt: skip
     watch = Watch(progress, threads)
     if is_path(source):
         native = _native.curves_of_file(os.fspath(source), options, watch)

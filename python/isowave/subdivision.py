@@ -160,9 +160,18 @@ class Hierarchy:
         """Reads a file of save() or of ``isowave reverse --details``. Raises InputError."""
         return cls(_native.load_hierarchy(os.fspath(path), Watch()))
 
-    def save(self, path: PathLike) -> None:
-        """Base and details in one file, as ``isowave reverse --details`` writes it; it appears whole or not at all."""
-        self._native.save(os.fspath(path))
+    def save(self, path: PathLike, *, threshold: Optional[float] = None, keep: Optional[int] = None) -> None:
+        """Base and details in one file, as ``isowave reverse --details`` writes it; it appears whole or not at all.
+
+        threshold: without details shorter than this. keep: with only that many of the longest. The file is smaller then.
+        """
+        if threshold is not None and keep is not None:
+            raise UsageError("--threshold and --keep exclude each other; give one of them")
+        if threshold is not None and not 0 < threshold < float("inf"):
+            raise UsageError(f"--threshold: '{threshold}' is not above 0")
+        if keep is not None and keep < 0:
+            raise UsageError(f"--keep: '{keep}' is below 0")
+        self._native.save(os.fspath(path), threshold, keep)
 
     @property
     def scheme(self) -> str:

@@ -2,8 +2,6 @@
 
 #include <memory>
 
-#include "base/atomic_file.h"
-#include "curves2d/polygon_input.h"
 #include "isowave/curves.h"
 #include "isowave/error.h"
 #include "python/native/options.h"
@@ -28,13 +26,15 @@ struct Choices : tools::CurveOptions {
         declareDrawing(options);
         declareInput(options);
         declareFit(options);
+        declareEdits(options);
+        declarePyramid(options);
     }
 };
 
-// One level as it is kept.
+// One step as it is kept.
 struct KeptCurves {
     std::string name;
-    int level = 0;
+    int step = 0;
     DrawnCurves drawn;
 };
 
@@ -46,9 +46,9 @@ struct MadeCurves {
 };
 using CurvesPointer = std::shared_ptr<MadeCurves>;
 
-void visit(const LadderStep& step, const DrawOptions& draw, MadeCurves& made) {
-    if (step.level() && !step.curves().rings.empty()) {
-        made.levels.push_back({step.name(), *step.level(), step.drawn(draw)});
+void visit(const LadderStep& step, const Choices& choices, MadeCurves& made) {
+    if (choices.isWanted(step) && !step.curves().rings.empty()) {
+        made.levels.push_back({step.name(), step.facts().step, step.drawn(choices.draw)});
         made.panels.push_back(step.panel(made.view));
         if (const auto& smooth = made.levels.back().drawn.smooth) {
             made.report.deviation = std::max(made.report.deviation, smooth->deviation / made.report.pixel);
@@ -61,6 +61,14 @@ void visit(const LadderStep& step, const DrawOptions& draw, MadeCurves& made) {
 CurvesPointer climb(Input input, const std::string& name, const Choices& choices, const Progress& progress) {
     auto made = std::make_shared<MadeCurves>();
     for (const std::string& remark : input.remarks) progress.say(remark);
+    for (const std::string& remark : choices.remarks()) progress.say(remark);
+    std::optional<tools::ResultFile> pyramid;
+    if (choices.pyramid) {
+        tools::Inputs(choices.inputs(name)).refuse(*choices.pyramid);
+        pyramid.emplace(*choices.pyramid);
+    }
+    input = choices.prepared(std::move(input), progress);
+    if (pyramid) pyramid->write(pyramidBytes(input));
     made->view = viewOf(input);
     made->report.path = name;
     made->report.kind = input.kind;
@@ -68,17 +76,18 @@ CurvesPointer climb(Input input, const std::string& name, const Choices& choices
     made->report.hold = choices.hold;
     made->report.smooth = choices.draw.smooth;
     made->report.ladder = makeLadder(
-        std::move(input), choices.ladder(), [&](const LadderStep& step) { visit(step, choices.draw, *made); },
+        std::move(input), choices.ladder(), [&](const LadderStep& step) { visit(step, choices, *made); },
         progress);
     for (const std::string& remark : tools::fitRemarks(made->report.ladder.fitReport)) progress.say(remark);
     tools::requireFirstLevel(choices, made->report.ladder, name);
+    if (pyramid) pyramid->commit();
     return made;
 }
 
 CurvesPointer ofFile(const std::filesystem::path& path, const GivenOptions& given, const py::object& watch) {
     const Choices choices(given);
     choices.ladder();
-    choices.refuseForeign(path.string(), looksLikePolygons(path));
+    choices.refuseForeign(path.string(), tools::curveInputOf(path));
     return watched(watch, [&](const Progress& progress) {
         return climb(readInput(path, choices.input(), progress), path.string(), choices, progress);
     });
@@ -89,7 +98,7 @@ CurvesPointer ofPicture(const py::array_t<float, py::array::c_style | py::array:
                         const GivenOptions& given, const py::object& watch) {
     const Choices choices(given);
     choices.ladder();
-    choices.refuseForeign("picture", false);
+    choices.refuseForeign("picture", tools::CurveInput::image);
     const auto rows = static_cast<std::int32_t>(values.shape(0)),
                columns = static_cast<std::int32_t>(values.shape(1));
     std::vector<float> copy(values.data(), values.data() + values.size());
@@ -105,7 +114,7 @@ CurvesPointer ofPolygons(const std::vector<std::vector<Ring2>>& polygons, const 
                          const py::object& watch) {
     const Choices choices(given);
     choices.ladder();
-    choices.refuseForeign("polygons", true);
+    choices.refuseForeign("polygons", tools::CurveInput::polygons);
     std::vector<Polygon> taken;
     for (const auto& rings : polygons) {
         Polygon& polygon = taken.emplace_back();
@@ -144,11 +153,9 @@ std::string textOf(const MadeCurves& made, std::size_t i, const std::string& for
 // A file that appears whole or not at all.
 void writeText(const std::filesystem::path& path, const std::string& text) {
     const py::gil_scoped_release release;
-    tools::OutputFile out(path);
-    AtomicFile file(path);
-    tools::writeWhole(file, text);
+    tools::ResultFile file(path);
+    file.write(text);
     file.commit();
-    out.commit();
 }
 
 std::vector<std::string> optionNames() {
@@ -163,7 +170,7 @@ std::vector<std::string> optionNames() {
 void bindCurves(py::module_& module) {
     py::class_<MadeCurves, CurvesPointer>(module, "Curves")
         .def("__len__", [](const MadeCurves& made) { return made.levels.size(); })
-        .def("level", [](const MadeCurves& made, std::size_t i) { return made.levels.at(i).level; })
+        .def("step", [](const MadeCurves& made, std::size_t i) { return made.levels.at(i).step; })
         .def("rings", ringsOf)
         .def("text", textOf)
         .def("sheet", [](const MadeCurves& made) { return sheetOf(made.panels, made.view); })

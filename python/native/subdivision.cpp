@@ -88,10 +88,14 @@ HierarchyPointer load(const std::filesystem::path& path, const py::object& watch
     });
 }
 
-void save(const MadeHierarchy& made, const std::filesystem::path& path) {
+void save(const MadeHierarchy& made, const std::filesystem::path& path, std::optional<double> shortest,
+          std::optional<std::size_t> count) {
     const py::gil_scoped_release release;
+    Hierarchy hierarchy = made.hierarchy;
+    if (shortest) threshold(hierarchy, *shortest);
+    if (count) keepLongest(hierarchy, *count);
     tools::OutputFile out(path);
-    saveHierarchy(path, made.hierarchy);
+    saveHierarchy(path, hierarchy);
     out.commit();
 }
 

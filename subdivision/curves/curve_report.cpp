@@ -7,7 +7,9 @@
 
 #include "isowave/error.h"
 #include "subdivision/curves/curve.h"
+#include "subdivision/curves/curve_details.h"
 #include "subdivision/curves/curve_limit.h"
+#include "subdivision/curves/filters_on_demand.h"
 
 namespace isowave::subdivision {
 
@@ -16,21 +18,6 @@ namespace {
 CurveScheme schemeOf(const CurveReportOptions& options) {
     return options.mask.empty() ? curveScheme(options.scheme) : maskScheme(options.mask, options.width);
 }
-
-// Filters for open and for closed curves, made when the first such curve comes.
-class FiltersOnDemand {
-  public:
-    explicit FiltersOnDemand(CurveScheme scheme) : scheme_(std::move(scheme)) {}
-    const CurveFilters& operator()(bool closed) {
-        auto& filters = closed ? closed_ : open_;
-        if (!filters) filters.emplace(scheme_, closed);
-        return *filters;
-    }
-
-  private:
-    CurveScheme scheme_;
-    std::optional<CurveFilters> open_, closed_;
-};
 
 double errorOf(const Polyline& curve, const CurveFilters& filters, int levels) {
     const CurveLevels parts = decompose(curve, filters, levels);
@@ -116,6 +103,7 @@ CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions&
     std::optional<CurveLimit> limit;
     if (options.positions == Positions::limit) limit.emplace(schemeOf(options));
     if (options.resample) resampleAll(curves, *options.resample);
+    CurveSet set{options.mask.empty() ? report.scheme : "", options.mask, options.width, 0, {}};
     for (const Polyline& curve : curves) {
         const CurveFilters& filters = filtersFor(curve.closed);
         const int levels = std::min(options.levels, filters.mostLevels(curve.size()));
@@ -127,12 +115,15 @@ CurveReport reportCurves(std::vector<Polyline> curves, const CurveReportOptions&
                                          std::min(levels, other(curve.closed).mostLevels(curve.size())));
         if (options.threshold || options.keep) dropDetails(curve, parts, filters, options, row, report);
         report.curves.push_back(std::move(row));
+        set.levels = std::max(set.levels, levels);
+        if (options.details) set.curves.push_back(std::move(parts));
     }
     if (report.tooShort == curves.size() && options.levels > 0) {
         // Says how many points the longest one lacks.
         const Polyline& most = longest(curves);
         decompose(most, filtersFor(most.closed), options.levels);
     }
+    if (options.details) report.details = curveDetailsBytes(set);
     if (limit) moveToLimit(*limit, report);
     return report;
 }

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "isowave/error.h"
@@ -21,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "sections are written 
 static_assert(sizeof(Vec3) == 24 && sizeof(Crease) == 16);
 
 constexpr char kMagic[8] = {'i', 's', 'o', 'w', 'm', 'e', 's', 'h'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kDense = 1, kSparse = 2;  // versions
 constexpr std::uint32_t kLargestHeader = 1 << 20;
 
 struct Prefix {
@@ -35,6 +36,50 @@ std::uint32_t crcOf(const void* data, std::size_t bytes) {
 }
 
 std::string detailsName(std::size_t k) { return fmt::format("details-{}", k + 1); }
+std::string keptName(std::size_t k) { return fmt::format("kept-{}", k + 1); }
+
+// ---- details without those that are 0: a bit for each says whether it is there ----
+
+struct SparseDetails {
+    std::vector<std::uint32_t> kept;  // 32 bits a word, the lowest first
+    std::vector<Vec3> details;
+};
+
+constexpr std::uint64_t wordsOf(std::uint64_t count) { return count / 32 + (count % 32 > 0); }
+
+// To the bit: -0 is not 0.
+bool isZero(const Vec3& d) {
+    static constexpr Vec3 zero{};
+    return std::memcmp(&d, &zero, sizeof d) == 0;
+}
+
+SparseDetails sparse(const std::vector<Vec3>& details) {
+    SparseDetails result{std::vector<std::uint32_t>(wordsOf(details.size())), {}};
+    for (std::size_t i = 0; i < details.size(); ++i) {
+        if (isZero(details[i])) continue;
+        result.kept[i / 32] |= std::uint32_t{1} << (i % 32);
+        result.details.push_back(details[i]);
+    }
+    return result;
+}
+
+// Nothing where the parts do not make `count` details.
+std::optional<std::vector<Vec3>> dense(const SparseDetails& parts, std::uint64_t count) {
+    if (parts.kept.size() != wordsOf(count)) return std::nullopt;
+    std::vector<Vec3> details(count);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < 32 * parts.kept.size(); ++i) {
+        if (!(parts.kept[i / 32] >> (i % 32) & 1)) continue;
+        if (i >= count || next == parts.details.size()) return std::nullopt;
+        details[i] = parts.details[next++];
+    }
+    if (next != parts.details.size()) return std::nullopt;
+    return details;
+}
+
+std::size_t bytesOf(const SparseDetails& parts) {
+    return parts.kept.size() * sizeof(std::uint32_t) + parts.details.size() * sizeof(Vec3);
+}
 
 // ---- writing ----
 
@@ -48,7 +93,24 @@ struct Sections {
         list.push_back(
             {{"name", name}, {"count", values.size()}, {"crc32", crcOf(values.data(), bytes.back().second)}});
     }
+    void add(std::size_t k, const SparseDetails& parts, std::size_t count) {
+        add(keptName(k), parts.kept);
+        add(detailsName(k), parts.details);
+        list.back()["of"] = count;
+    }
 };
+
+// Of every level, where that takes fewer bytes than all details do; else nothing.
+std::vector<SparseDetails> sparseWhereSmaller(const Hierarchy& hierarchy) {
+    std::vector<SparseDetails> all;
+    std::size_t bytes = 0;
+    for (const auto& details : hierarchy.details) {
+        all.push_back(sparse(details));
+        bytes += bytesOf(all.back());
+    }
+    if (bytes >= detailCount(hierarchy) * sizeof(Vec3)) all.clear();
+    return all;
+}
 
 }  // namespace
 
@@ -61,8 +123,13 @@ void writeHierarchy(std::ostream& stream, const Hierarchy& hierarchy) {
     sections.add("corners", hierarchy.base.corners);
     sections.add("creases", hierarchy.base.creases);
     sections.add("pinned", hierarchy.base.pinned);
-    for (std::size_t k = 0; k < hierarchy.details.size(); ++k)
-        sections.add(detailsName(k), hierarchy.details[k]);
+    const std::vector<SparseDetails> kept = sparseWhereSmaller(hierarchy);
+    for (std::size_t k = 0; k < hierarchy.details.size(); ++k) {
+        if (kept.empty())
+            sections.add(detailsName(k), hierarchy.details[k]);
+        else
+            sections.add(k, kept[k], hierarchy.details[k].size());
+    }
     sections.add("order-vertices", hierarchy.order.vertex);
     sections.add("order-corners", hierarchy.order.firstCorner);
     const nlohmann::ordered_json header = {{"scheme", hierarchy.scheme},
@@ -70,7 +137,10 @@ void writeHierarchy(std::ostream& stream, const Hierarchy& hierarchy) {
                                            {"steps", hierarchy.steps()},
                                            {"sections", sections.list}};
     const std::string text = header.dump();
-    Prefix prefix{{}, kVersion, static_cast<std::uint32_t>(text.size()), crcOf(text.data(), text.size())};
+    Prefix prefix{{},
+                  kept.empty() ? kDense : kSparse,
+                  static_cast<std::uint32_t>(text.size()),
+                  crcOf(text.data(), text.size())};
     std::memcpy(prefix.magic, kMagic, sizeof kMagic);
 
     const auto write = [&](const void* data, std::size_t bytes) {
@@ -115,11 +185,12 @@ class Reader {
         if (whole) stream_.read(reinterpret_cast<char*>(&prefix), sizeof prefix);
         if (!whole || std::memcmp(prefix.magic, kMagic, sizeof kMagic) != 0)
             throw InputError(name_, "holds no details of a mesh, as isowave reverse --details writes them");
-        if (prefix.version != kVersion) {
-            throw InputError(name_,
-                             fmt::format("has version {}; this program reads version {}: take a newer one",
-                                         prefix.version, kVersion));
+        if (prefix.version != kDense && prefix.version != kSparse) {
+            throw InputError(
+                name_, fmt::format("has version {}; this program reads versions {} and {}: take a newer one",
+                                   prefix.version, kDense, kSparse));
         }
+        version_ = prefix.version;
         if (prefix.headerBytes > kLargestHeader) damaged("header");
         std::string text(prefix.headerBytes, '\0');
         read(text.data(), text.size(), "header");
@@ -136,6 +207,19 @@ class Reader {
         read(values.data(), count * sizeof(T), name);
         if (crcOf(values.data(), count * sizeof(T)) != entry.at("crc32").get<std::uint32_t>()) damaged(name);
         return values;
+    }
+
+    bool isSparse() const { return version_ == kSparse; }
+    // The details of a step. REQUIRES: isSparse().
+    std::vector<Vec3> sparseDetails(const nlohmann::json& kept, const nlohmann::json& details) {
+        const auto count = details.at("of").get<std::uint64_t>();
+        SparseDetails parts;
+        parts.kept = section<std::uint32_t>(kept);
+        if (parts.kept.size() != wordsOf(count)) damaged(kept.at("name").get<std::string>());
+        parts.details = section<Vec3>(details);
+        auto all = dense(parts, count);
+        if (!all) damaged(details.at("name").get<std::string>());
+        return std::move(*all);
     }
 
     void requireEnd() {
@@ -166,6 +250,7 @@ class Reader {
     std::string name_;
     std::ifstream stream_;
     std::uint64_t bytes_ = 0;
+    std::uint32_t version_ = kDense;
 };
 
 bool isPermutation(const std::vector<Index>& order) {
@@ -219,8 +304,10 @@ Hierarchy loadHierarchy(const std::filesystem::path& path, int steps) {
         const auto header = reader.header();
         const auto& sections = header.at("sections");
         const int there = header.at("steps").get<int>();
-        if (there < 0 || sections.size() != kBaseSections + static_cast<std::size_t>(there) + 2)
+        const std::size_t each = reader.isSparse() ? 2 : 1;  // sections of a step
+        if (there < 0 || sections.size() != kBaseSections + each * static_cast<std::size_t>(there) + 2)
             reader.damaged("header");
+        const std::size_t behind = sections.size() - 2;
         if (steps > there) {
             throw InputError(path.string(),
                              fmt::format("holds details for {} levels, but {} were asked for", there, steps));
@@ -234,13 +321,16 @@ Hierarchy loadHierarchy(const std::filesystem::path& path, int steps) {
         requireManifold(result.base, path.string());
         std::size_t points = result.base.vertexCount();
         for (int k = 0; k < count; ++k) {
-            result.details.push_back(reader.section<Vec3>(sections.at(kBaseSections + k)));
+            const std::size_t at = kBaseSections + each * static_cast<std::size_t>(k);
+            result.details.push_back(reader.isSparse()
+                                         ? reader.sparseDetails(sections.at(at), sections.at(at + 1))
+                                         : reader.section<Vec3>(sections.at(at)));
             points += result.details.back().size();
         }
         result.truncated = count < there;
         if (result.truncated) return result;
-        result.order.vertex = reader.section<Index>(sections.at(kBaseSections + there));
-        result.order.firstCorner = reader.section<Index>(sections.at(kBaseSections + there + 1));
+        result.order.vertex = reader.section<Index>(sections.at(behind));
+        result.order.firstCorner = reader.section<Index>(sections.at(behind + 1));
         reader.requireEnd();
         if (!isOrder(result.order, points)) reader.damaged("order-vertices");
         return result;

@@ -33,6 +33,8 @@ DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const Polygo
     report.creases = hierarchy.base.creases.size();
     report.pinned = hierarchy.base.pinned.size();
     report.diagonal = diagonal(mesh.points);
+    report.details = detailCount(hierarchy);
+    report.kept = nonzeroDetailCount(hierarchy);
     report.levels.push_back({hierarchy.base.vertexCount(), hierarchy.base.faceCount(), 0, 0, {}});
     for (int k = 0; k <= hierarchy.steps(); ++k) {
         // One reconstruction for each level: with its details up to there, with none behind.
@@ -55,6 +57,14 @@ DecompositionReport reportDecomposition(const Hierarchy& hierarchy, const Polygo
         report.levels[k].detailLargest = size.largest;
     }
     return report;
+}
+
+void dropDetails(Hierarchy& hierarchy, const PolygonMesh& mesh, std::optional<double> shortest,
+                 std::optional<std::size_t> count, DecompositionReport& report, const Progress& progress) {
+    if (shortest) threshold(hierarchy, *shortest);
+    if (count) keepLongest(hierarchy, *count);
+    report.kept = nonzeroDetailCount(hierarchy);
+    report.dropped = pointError(reconstruct(hierarchy, kAllLevels, progress).points, mesh.points);
 }
 
 std::vector<RebuildReport::Share> errorByShare(const Hierarchy& hierarchy, const PolygonMesh& whole,

@@ -131,7 +131,7 @@ TEST(PackedFile, RefusesEveryTruncationAndEveryChangedByte) {
 
 // What no checksum can find: sections whose bytes are others, with checksums that are right.
 TEST(PackedFile, RefusesOrReadsOtherBytesUnderRightChecksums) {
-    const std::vector<Section> whole = sectionsOf(pack(ball(), "ball", {.bound = 0.5}).bytes);
+    const std::vector<Section> whole = sectionsOf(kPackedFormat, pack(ball(), "ball", {.bound = 0.5}).bytes);
     std::mt19937 random(2);
     int refused = 0, tried = 0;
     for (int run = 0; run < 500; ++run) {
@@ -142,7 +142,7 @@ TEST(PackedFile, RefusesOrReadsOtherBytesUnderRightChecksums) {
         if (run % 5 == 0) content.resize(random() % content.size());
         for (std::size_t left = 1 + random() % 3; left > 0 && !content.empty(); --left)
             content[random() % content.size()] = static_cast<char>(random());
-        const std::string message = messageOf(fileOf(sections));
+        const std::string message = messageOf(fileOf(kPackedFormat, sections));
         refused += !message.empty();
         EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
     }

@@ -63,6 +63,47 @@ def test_other_texts_and_the_sheet(tmp_path):
         ladder[0].save(tmp_path / "x.png")
 
 
+def test_steps_are_those_of_the_command(tmp_path):
+    ladder = isowave.curves(AFRICA, pixels=128, steps=(1, 4))
+    assert [(level.step, level.level) for level in ladder] == [(1, None), (2, 1), (3, None), (4, 2)]
+    assert stable(ladder.report) == stable(command_curves(tmp_path, AFRICA, "--pixels", 128, "--steps", "1..4"))
+    ladder[0].save(tmp_path / "one.svg")
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "out/x/x_L0a.svg").read_bytes()
+    assert "step 1" in repr(ladder[0]) and "0a" in ladder._repr_html_()
+    with pytest.raises(isowave.UsageError, match="exclude each other"):
+        isowave.curves(AFRICA, levels=1, steps=2)
+
+
+def test_a_pyramid_takes_the_place_of_its_input(tmp_path):
+    made = isowave.curves(AFRICA, pixels=128, pyramid=tmp_path / "new/p.iwc")
+    command_curves(tmp_path, AFRICA, "--pixels", 128, "--pyramid", tmp_path / "c.iwc")
+    assert (tmp_path / "new/p.iwc").read_bytes() == (tmp_path / "c.iwc").read_bytes()
+    read = isowave.curves(tmp_path / "c.iwc")
+    assert [level.text() for level in read] == [level.text() for level in made]
+    assert [level.report for level in read] == [level.report for level in made]
+    with pytest.raises(isowave.UsageError, match="fitted already"):
+        isowave.curves(tmp_path / "c.iwc", pixels=128)
+    with pytest.raises(isowave.UsageError, match="does not end in .iwc"):
+        isowave.curves(AFRICA, pyramid=tmp_path / "p.vdb")
+    with pytest.raises(isowave.UsageError, match="c.iwc"):
+        isowave.curves(tmp_path / "c.iwc", pyramid=tmp_path / "c.iwc")
+    (tmp_path / "cut.iwc").write_bytes((tmp_path / "c.iwc").read_bytes()[:200])
+    with pytest.raises(isowave.InputError, match="truncated"):
+        isowave.curves(tmp_path / "cut.iwc")
+
+
+def test_edits_are_those_of_the_command(tmp_path):
+    (tmp_path / "square.txt").write_text("20 0\n60 0\n60 20\n20 20\n")
+    (tmp_path / "small.txt").write_text("21 1\n25 1\n25 5\n21 5\n")
+    square, small = tmp_path / "square.txt", tmp_path / "small.txt"
+    ladder = isowave.curves(AFRICA, pixels=128, add=square, cut=[small], edit_level=1, levels=(0, 2))
+    words = ["--pixels", 128, "--add", square, "--cut", small, "--edit-level", 1, "--levels", "0..2"]
+    assert stable(ladder.report) == stable(command_curves(tmp_path, AFRICA, *words))
+    (tmp_path / "far.txt").write_text("900 900\n950 900\n950 950\n")
+    with pytest.raises(isowave.InputError, match="far.txt: cuts nothing away"):
+        isowave.curves(square, cut=tmp_path / "far.txt")
+
+
 def test_errors(tmp_path):
     with pytest.raises(isowave.UsageError) as caught:
         isowave.curves(KEYRING, pixels=64)

@@ -79,6 +79,23 @@ def test_a_real_mesh_there_and_back(tmp_path):
     assert len(levels.rebuild(1).faces) == 4 * len(levels.base.faces)
 
 
+def test_the_longest_details_alone_make_a_smaller_file(tmp_path):
+    levels = isowave.reverse(ANCHOR, scheme="loop")
+    levels.save(tmp_path / "whole")
+    levels.save(tmp_path / "part", keep=100)
+    command("reverse", ANCHOR, "--scheme", "loop", "-o", tmp_path / "base.off", "--details", tmp_path / "c", "--keep", 100)
+    assert (tmp_path / "part").read_bytes() == (tmp_path / "c").read_bytes()
+    assert (tmp_path / "part").stat().st_size < (tmp_path / "whole").stat().st_size / 2
+    part = isowave.Hierarchy.load(tmp_path / "part")
+    np.testing.assert_array_equal(part.rebuild().points, levels.rebuild(keep=100).points)
+    levels.save(tmp_path / "again")  # nothing was dropped from what is held
+    assert (tmp_path / "again").read_bytes() == (tmp_path / "whole").read_bytes()
+    for wrong in ({"keep": 1, "threshold": 1}, {"keep": -1}, {"threshold": float("nan")}, {"threshold": 0}):
+        with pytest.raises(isowave.UsageError, match="--keep|--threshold"):
+            levels.save(tmp_path / "x", **wrong)
+    assert not (tmp_path / "x").exists()
+
+
 def test_an_edit_of_the_base_moves_all_and_simplifying_leaves_details_out():
     levels = isowave.reverse(ANCHOR, scheme="loop")
     moved = levels.rebuild(moved=levels.base.points + [1, 2, 3])

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -171,6 +172,43 @@ TEST(HierarchyFile, RefusesEveryChangedByte) {
     }
 }
 
+TEST(HierarchyFile, DoesNotStoreDroppedDetails) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "h.details";
+    Hierarchy hierarchy = decompose(detailed(tetrahedron(), 4, 0.1, 27), scheme(), "refined", 4);
+    const std::size_t whole = bytesOf(hierarchy).size(), all = detailCount(hierarchy);
+    for (const std::size_t keep : {all - 1, all / 2, std::size_t{33}, std::size_t{0}}) {
+        keepLongest(hierarchy, keep);
+        hierarchy.details[1][2] = {0, -0.0, 0};  // to the bit: this is no dropped one
+        saveHierarchy(file, hierarchy);
+        const Hierarchy back = loadHierarchy(file);
+        EXPECT_EQ(bytesOf(back), bytesOf(hierarchy)) << keep;
+        EXPECT_EQ(back.details, hierarchy.details) << keep;
+        EXPECT_TRUE(std::signbit(back.details[1][2].y));
+        EXPECT_EQ(back.order, hierarchy.order) << keep;
+        EXPECT_EQ(loadHierarchy(file, 2).details.size(), 2u);
+        EXPECT_EQ(loadHierarchy(file, 2).details[1], hierarchy.details[1]);
+    }
+    // 24 bytes a detail less, but for a bit each and a longer header.
+    EXPECT_LT(bytesOf(hierarchy).size() + 24 * all, whole + all / 8 + 1000);
+}
+
+TEST(HierarchyFile, WithoutDroppedDetailsRefusesEveryTruncationAndChangedByte) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "h.details";
+    Hierarchy hierarchy = decompose(detailed(tetrahedron(), 2, 0.1, 28), scheme(), "refined", 2);
+    keepLongest(hierarchy, 9);
+    const std::string bytes = bytesOf(hierarchy);
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(at));
+        EXPECT_NE(complaintOf(file), "") << at;
+        std::string changed = bytes;
+        changed[at] = char(changed[at] ^ 0x10);
+        std::ofstream(file, std::ios::binary) << changed;
+        EXPECT_NE(complaintOf(file), "") << at;
+    }
+}
+
 // ---- creases ----
 
 TEST(Hierarchy, FindsCreasesByAngle) {
@@ -317,6 +355,21 @@ TEST(HierarchyReport, SaysWhatWasFound) {
 }
 
 // ---- rebuild: edits, and fewer details ----
+
+TEST(HierarchyReport, MeasuresWhatDroppedDetailsCost) {
+    const PolygonMesh fine = detailed(tetrahedron(), 3, 0.1, 29);
+    Hierarchy hierarchy = decompose(fine, scheme(), "refined", 3);
+    DecompositionReport report = reportDecomposition(hierarchy, fine);
+    EXPECT_EQ(report.details, detailCount(hierarchy));
+    EXPECT_EQ(report.kept, report.details);
+    dropDetails(hierarchy, fine, std::nullopt, 20, report);
+    EXPECT_EQ(report.kept, 20u);
+    EXPECT_EQ(nonzeroDetailCount(hierarchy), 20u);
+    EXPECT_EQ(report.dropped.largest, pointError(reconstruct(hierarchy).points, fine.points).largest);
+    EXPECT_GT(report.dropped.rms, 0);
+    dropDetails(hierarchy, fine, 1e9, std::nullopt, report);
+    EXPECT_EQ(report.kept, 0u);
+}
 
 TEST(Rebuild, FollowsAnEditAndLeavesDetailsOut) {
     const PolygonMesh fine = detailed(torus(12, 8), 2, 0.02, 33);

@@ -92,6 +92,162 @@ TEST(CurvesCommand, HoldsThinPartsUnlessToldNotTo) {
     EXPECT_GT(none["steps"][6]["rings"], none["steps"][0]["rings"]);
 }
 
+TEST(CurvesCommand, WritesHalfStepsByTheirNames) {
+    const Folder folder;
+    const Result result =
+        isowave(curves(kAfrica, folder,
+                       {"--pixels", "120", "--steps", "1..4", "--format", "geojson", "--sheet",
+                        (folder / "sheet.svg").string(), "--json", (folder / "report.json").string()}));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("the steps between them do not"));
+    const auto report = jsonFile(folder / "report.json");
+    std::vector<std::string> files;
+    for (const auto& step : report["steps"]) files.push_back(step["file"]);
+    EXPECT_THAT(files, testing::ElementsAre("map_L0a.geojson", "map_L1.geojson", "map_L1a.geojson",
+                                            "map_L2.geojson"));
+    for (const std::string& file : files) EXPECT_TRUE(fs::exists(folder / ("out/map/" + file))) << file;
+    EXPECT_FALSE(fs::exists(folder / "out/map/map_L0.geojson"));
+    const auto half = jsonFile(folder / "out/map/map_L1a.geojson");
+    EXPECT_EQ(half["features"][0]["properties"]["name"], "map L1a");
+    EXPECT_THAT(contentOf(folder / "sheet.svg"), HasSubstr(">L1a</text>"));
+    // A level is the same file whether it was asked for as a level or as a step.
+    const std::string step = contentOf(folder / "out/map/map_L2.geojson");
+    ASSERT_EQ(isowave(curves(kAfrica, folder, {"--pixels", "120", "--levels", "2", "--format", "geojson"}))
+                  .exitCode,
+              0);
+    EXPECT_TRUE(contentOf(folder / "out/map/map_L2.geojson") == step);
+}
+
+// The result of `input` with all of these options, its report without what may differ, as text.
+std::map<std::string, std::string> resultOf(const std::string& input, const Folder& folder,
+                                            Arguments options) {
+    const fs::path report = folder / "out/map/report.json";
+    options.insert(options.end(), {"--json", report.string()});
+    fs::remove_all(folder / "out");
+    const Result result = isowave(curves(input, folder, options));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder / "out/map"))
+        files[entry.path().filename().string()] = contentOf(entry.path());
+    auto json = nlohmann::json::parse(files["report.json"]);
+    EXPECT_EQ(json["input"]["path"], input);
+    json["input"].erase("path");
+    json.erase("peak_memory_bytes");
+    files["report.json"] = json.dump();
+    return files;
+}
+
+TEST(CurvesCommand, APyramidTakesThePlaceOfItsInputToTheByte) {
+    const std::vector<std::pair<std::string, Arguments>> inputs = {
+        {kAfrica, {"--pixels", "120", "--band", "1.5"}}, {kKeys, {"--invert"}}};
+    const std::vector<Arguments> draw = {{"--format", "geojson"},
+                                         {"--steps", "0..5", "--format", "txt"},
+                                         {"--smooth", "--levels", "0..2"},
+                                         {"--hold", "none", "--format", "png"}};
+    const Folder folder;
+    const std::string pyramid = (folder / "deep/p.iwc").string();
+    for (const auto& [input, options] : inputs)
+        for (const Arguments& how : draw) {
+            Arguments all = options;
+            all.insert(all.end(), how.begin(), how.end());
+            const auto plain = resultOf(input, folder, all);
+            EXPECT_GT(plain.size(), 3u);
+            all.insert(all.end(), {"--pyramid", pyramid});
+            EXPECT_TRUE(resultOf(input, folder, all) == plain) << input << " " << how[0];
+            EXPECT_TRUE(resultOf(pyramid, folder, how) == plain) << input << " " << how[0];
+        }
+}
+
+TEST(CurvesCommand, RefusesWhatAPyramidHasNoUseFor) {
+    const Folder folder;
+    const std::string file = (folder / "p.iwc").string();
+    ASSERT_EQ(isowave(curves(kAfrica, folder, {"--pixels", "60", "--pyramid", file})).exitCode, 0);
+    const std::string bytes = contentOf(file);
+    std::ofstream(folder / "half.iwc", std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    std::ofstream(folder / "other.iwc") << "some text";
+    struct {
+        std::string input;
+        Arguments more;
+        int exitCode;
+        std::string says;
+    } all[] = {{file, {"--pixels", "64"}, 2, "which is a pyramid, fitted already"},
+               {file, {"--invert"}, 2, "--invert has no meaning"},
+               {file, {"--fit", "binary"}, 2, "--fit has no meaning"},
+               {file, {"--half-width", "5"}, 2, "--half-width has no meaning"},
+               {file, {"--pyramid", file}, 2, "p.iwc"},
+               {file, {"--levels", "1", "--steps", "2"}, 2, "--levels and --steps exclude each other"},
+               {file, {"--steps", "90.."}, 3, "ends at step"},
+               {kAfrica, {"--pyramid", (folder / "p.vdb").string()}, 2, "does not end in .iwc"},
+               {(folder / "half.iwc").string(), {}, 3, "it is truncated"},
+               {(folder / "other.iwc").string(), {}, 3, "is no pyramid of curves"},
+               {(folder / "none.iwc").string(), {}, 3, "none.iwc"}};
+    const auto snapshot = folder.snapshot();
+    for (const auto& bad : all) {
+        Arguments arguments{"curves", bad.input, "-o", (folder / "new").string()};
+        arguments.insert(arguments.end(), bad.more.begin(), bad.more.end());
+        const Result refused = isowave(arguments);
+        EXPECT_EQ(refused.exitCode, bad.exitCode) << bad.says << refused.err;
+        EXPECT_THAT(refused.err, HasSubstr(bad.says));
+        EXPECT_EQ(refused.errorLines(), 1) << refused.err;
+        EXPECT_EQ(folder.snapshot(), snapshot) << bad.says;
+    }
+}
+
+TEST(CurvesCommand, AddsAndCutsPolygonsInTheirOrder) {
+    const Folder folder;
+    const auto write = [&](const char* name, const char* ring) {
+        std::ofstream(folder / name) << ring;
+        return (folder / name).string();
+    };
+    const std::string plate = write("plate.txt", "0 0\n100 0\n100 50\n0 50\n"),
+                      boss = write("boss.txt", "60 30\n90 30\n90 80\n60 80\n"),
+                      hole = write("hole.txt", "70 40\n80 40\n80 70\n70 70\n"),
+                      inner = write("inner.txt", "73 43\n77 43\n77 65\n73 65\n"),
+                      far = write("far.txt", "200 200\n210 200\n210 210\n");
+    const auto area = [&](const std::string& input, const Arguments& more) {
+        Arguments all{"--levels", "0", "--json", (folder / "r.json").string()};
+        all.insert(all.end(), more.begin(), more.end());
+        const Result result = isowave(curves(input, folder, all));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return jsonFile(folder / "r.json")["steps"][0]["area"].get<double>();
+    };
+    const std::string pyramid = (folder / "p.iwc").string();
+    const double plain = area(plate, {"--pixels", "400", "--pyramid", pyramid});
+    EXPECT_NEAR(plain, 5000, 10);
+    EXPECT_NEAR(area(plate, {"--pixels", "400", "--add", boss, "--cut", hole}), 5000 + 900 - 300, 15);
+    EXPECT_NEAR(area(plate, {"--pixels", "400", "--cut", hole, "--add", boss}), 5000 + 900, 15);
+    const std::string edited = (folder / "q.iwc").string();
+    EXPECT_NEAR(area(pyramid, {"--add", boss, "--cut", hole, "--edit-level", "2", "--pyramid", edited}), 5600,
+                30);
+    EXPECT_NEAR(area(edited, {}), 5600, 30);
+    const auto before = folder.snapshot();
+    const struct {
+        Arguments more;
+        int code;
+        const char* says;
+    } cases[] = {{{"--cut", far}, 3, "far.txt: cuts nothing away"},
+                 {{"--cut", plate}, 0, ""},
+                 {{"--add", hole, "--add", inner}, 3, "inner.txt: adds nothing"},
+                 {{"--edit-level", "1"}, 2, "--edit-level: belongs to --add and --cut"},
+                 {{"--add", boss, "--edit-level", "-1"}, 2, "--edit-level"},
+                 {{"--add", (folder / "none.txt").string()}, 3, "none.txt"},
+                 {{"--add", boss, "--pyramid", boss}, 2, "boss.txt"}};
+    for (const auto& bad : cases) {
+        Arguments all{"curves", edited, "-o", (folder / "new/x").string()};
+        all.insert(all.end(), bad.more.begin(), bad.more.end());
+        const Result result = isowave(all);
+        if (bad.code == 0) {
+            EXPECT_EQ(result.exitCode, 0) << result.err;  // the rest of the boss is left
+            fs::remove_all(folder / "new");
+            continue;
+        }
+        EXPECT_EQ(result.exitCode, bad.code) << bad.says << result.err;
+        EXPECT_THAT(result.err, HasSubstr(bad.says));
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_EQ(folder.snapshot(), before) << bad.says;
+    }
+}
+
 struct Bad {
     std::string name, content;
     Arguments more;

@@ -94,6 +94,52 @@ TEST(Reverse, TakesACarApartAndRebuildPutsItBack) {
                 HasSubstr("without the others rms"));
 }
 
+TEST(Reverse, KeepsTheLongestDetailsInASmallerFile) {
+    const Folder folder;
+    succeed(
+        {"subdivide", kCages + "catmark_car.obj", "--depth", "2", "-o", in(folder, "smooth.obj"), "--quiet"});
+    roughen(folder / "smooth.obj", folder / "fine.obj");
+    const auto reverse = [&](const char* name, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"reverse",   in(folder, "fine.obj"),
+                                           "-o",        in(folder, "base.obj"),
+                                           "--depth",   "2",
+                                           "--details", in(folder, name),
+                                           "--json",    "-"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments).json();
+    };
+    const auto whole = reverse("whole", {}), part = reverse("part", {"--keep", "1000"});
+    EXPECT_EQ(whole["kept"], whole["details"]);
+    EXPECT_EQ(whole["dropped"]["largest"], 0);
+    EXPECT_EQ(part["kept"], 1000);
+    EXPECT_GT(part["dropped"]["rms"], 0);
+    EXPECT_LT(5 * fs::file_size(folder / "part"), 2 * fs::file_size(folder / "whole"));  // seen 2.8 times
+    // What rebuild makes of it is what it makes of the whole file with --keep.
+    const auto rebuild = [&](const char* details, const char* out, std::vector<std::string> more) {
+        std::vector<std::string> arguments{
+            "rebuild", in(folder, "base.obj"), "--details", in(folder, details),
+            "-o",      in(folder, out),        "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        succeed(arguments);
+        return contentOf(folder / out);
+    };
+    EXPECT_EQ(rebuild("part", "a.obj", {}), rebuild("whole", "b.obj", {"--keep", "1000"}));
+    const auto refused = [&](std::vector<std::string> more, const char* says) {
+        std::vector<std::string> arguments{"reverse", in(folder, "fine.obj"), "-o", in(folder, "x.obj")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, 2);
+        EXPECT_EQ(result.errorLines(), 1);
+        EXPECT_THAT(result.err, HasSubstr(says));
+    };
+    refused({"--keep", "10"}, "--keep: says what goes into the file of --details");
+    refused({"--threshold", "nan", "--details", in(folder, "d")}, "--threshold");
+    refused({"--keep", "-1", "--details", in(folder, "d")}, "--keep");
+    refused({"--keep", "1", "--threshold", "1", "--details", in(folder, "d")}, "give one of them");
+    EXPECT_FALSE(fs::exists(folder / "x.obj"));
+    EXPECT_FALSE(fs::exists(folder / "d"));
+}
+
 // The masks are tested in the library. A corner (1, 1, 1) of a cube has 9 v' = (5, 5, 5), sum(e) = (3/2, 3/2, 3/2) and
 // sum(f) = (1, 1, 1), so its limit (9 v' + 4 sum(e) + sum(f))/24 is half of it.
 TEST(MeshHierarchyCommands, WriteLimitPositionsThatRebuildDoesNotTake) {

@@ -133,6 +133,139 @@ TEST(SubdivisionCommands, WriteLimitPositions) {
     EXPECT_TRUE(same("reconstructed.npy"));
 }
 
+// The written levels are the library's, whose tests say what rebuild() makes of them.
+TEST(LevelDetails, BringCurvesOfEveryFormatBack) {
+    for (const fs::path& input : {kData / "coast" / "iceland.txt", kData / "curves2d" / "africa.geojson"}) {
+        const Folder folder;
+        const std::string extension = input.extension().string(), details = (folder / "new/d").string();
+        succeed({"curve-levels", input.string(), "-o", (folder / "levels").string(), "--depth", "3",
+                 "--details", details, "--quiet"});
+        const auto level = [&](int k) {
+            return (folder / "levels" / ("level_" + std::to_string(k) + extension)).string();
+        };
+        const auto rebuild = [&](const std::string& name, std::vector<std::string> more) {
+            std::vector<std::string> arguments{"rebuild", level(3), "--details",
+                                               details,   "-o",     (folder / (name + extension)).string(),
+                                               "--json",  "-"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            return succeed(arguments).json();
+        };
+        const auto report = rebuild("back", {});
+        EXPECT_EQ(contentOf(folder / ("back" + extension)), contentOf(level(0)));
+        EXPECT_EQ(report["details"], report["kept"]);
+        EXPECT_EQ(report["error"]["largest"], 0);
+        rebuild("middle", {"--depth", "2"});
+        EXPECT_EQ(contentOf(folder / ("middle" + extension)), contentOf(level(1)));
+        EXPECT_EQ(rebuild("part", {"--threshold", "1e9"})["kept"], 0);
+        const auto edited = rebuild("edited", {"--edited", level(3), "--frames", "local"});
+        EXPECT_EQ(edited["points"], report["points"]);
+        EXPECT_EQ(rebuild("limit", {"--limit"})["positions"], "limit");
+    }
+}
+
+TEST(LevelDetails, OfCurvesHoldWhatKeepLeaves) {
+    const Folder folder;
+    const auto coast = (kData / "coast" / "great_britain.txt").string();
+    const auto write = [&](const char* name, std::vector<std::string> more) {
+        std::vector<std::string> arguments{
+            "curve-levels",           coast,    "-o", (folder / "l").string(), "--details",
+            (folder / name).string(), "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        succeed(arguments);
+    };
+    write("whole", {});
+    write("part", {"--keep", "500"});
+    EXPECT_LT(3 * fs::file_size(folder / "part"), fs::file_size(folder / "whole"));
+    const auto report =
+        succeed({"rebuild", (folder / "l/level_6.txt").string(), "--details", (folder / "part").string(),
+                 "-o", (folder / "back.txt").string(), "--json", "-"})
+            .json();
+    EXPECT_EQ(report["kept"], 500);
+    EXPECT_EQ(contentOf(folder / "back.txt"), contentOf(folder / "l/thresholded.txt"));
+}
+
+TEST(LevelDetails, BringHeightsBack) {
+    const Folder folder;
+    const auto details = (folder / "d").string(), terrain = (kData / "terrain" / "jacksboro.npy").string();
+    succeed({"relief", terrain, "-o", (folder / "r").string(), "--details", details, "--quiet"});
+    const auto rebuild = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{
+            "rebuild", (folder / "r/level_2.npy").string(), "--details", details,
+            "-o",      (folder / "x.npy").string(),         "--json",    "-"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments).json();
+    };
+    rebuild({});
+    EXPECT_EQ(contentOf(folder / "x.npy"), contentOf(folder / "r/reconstructed.npy"));
+    rebuild({"--depth", "1"});
+    EXPECT_EQ(contentOf(folder / "x.npy"), contentOf(folder / "r/level_1.npy"));
+    rebuild({"--edited", (folder / "r/level_2.npy").string()});
+    EXPECT_EQ(contentOf(folder / "x.npy"), contentOf(folder / "r/reconstructed.npy"));
+    EXPECT_EQ(rebuild({"--keep", "900"})["kept"], 900);
+}
+
+TEST(LevelDetails, ThatDoNotBelongAreRefusedInOneLine) {
+    const Folder folder;
+    const auto at = [&](const std::string& name) { return (folder / name).string(); };
+    succeed({"curve-levels", (kData / "coast" / "iceland.txt").string(), "-o", at("c"), "--depth", "2",
+             "--details", at("c.d"), "--scheme", "cubic-7", "--quiet"});
+    succeed({"curve-levels", (kData / "coast" / "iceland.txt").string(), "-o", at("limit"), "--depth", "2",
+             "--limit", "--scheme", "cubic-7", "--quiet"});
+    succeed({"relief", (kData / "terrain" / "jacksboro.npy").string(), "-o", at("r"), "--details", at("r.d"),
+             "--quiet"});
+    std::ofstream(folder / "cut", std::ios::binary) << contentOf(folder / "c.d").substr(0, 100);
+    std::ofstream(folder / "other.txt") << "0 0\n1 1\n2 0\n";
+    const auto before = folder.snapshot();
+    const struct {
+        std::string base, details;
+        std::vector<std::string> more;
+        int code;
+        const char* says;
+    } cases[] = {
+        {at("c/level_1.txt"), at("c.d"), {}, 3, "the coarse curve of the details is"},
+        {at("limit/level_2.txt"), at("c.d"), {}, 3, "what was written without --limit"},
+        {at("c/level_2.txt"), at("c.d"), {"--edited", at("other.txt")}, 3, "other.txt: curve 0 is"},
+        {at("c/level_2.txt"), at("c.d"), {"--depth", "3"}, 3, "holds details for 2 levels"},
+        {at("c/level_2.txt"), at("c.d"), {"--keep", "-2"}, 2, "--keep"},
+        {at("c/level_2.txt"), at("c.d"), {"--threshold", "nan"}, 2, "--threshold"},
+        {at("c/level_2.txt"), at("c.d"), {"--threshold", "-1"}, 2, "--threshold"},
+        {at("c/level_2.txt"), at("c.d"), {"--error-table"}, 2, "--error-table: is of meshes"},
+        {at("c/level_2.txt"), at("c.d"), {"-o", at("x.svg")}, 2, "name it .txt"},
+        {at("c/level_2.txt"), at("cut"), {}, 3, "it is truncated"},
+        {at("c/level_2.txt"), at("none"), {"-o", at("x.obj")}, 3, "none: "},
+        {at("c/level_2.txt"), at("other.txt"), {"-o", at("x.obj")}, 3, "holds no details of a mesh"},
+        {at("r/level_1.npy"), at("r.d"), {"-o", at("x.npy")}, 3, "the coarse heights of the details have"},
+        {at("r/level_2.npy"),
+         at("r.d"),
+         {"-o", at("x.npy"), "--edited", at("r/level_0.npy")},
+         3,
+         "level_0.npy: has 161"},
+        {at("r/level_2.npy"),
+         at("r.d"),
+         {"-o", at("x.npy"), "--edited", at("r/level_2.npy"), "--frames", "local"},
+         2,
+         "has no meaning for heights"},
+        {at("r/level_2.npy"), at("r.d"), {}, 2, "name it .npy"},
+        {at("r/level_2.npy"), at("c.d"), {"-o", at("x.npy")}, 3, "level_2.npy"},
+    };
+    for (const auto& bad : cases) {
+        std::vector<std::string> arguments{"rebuild", bad.base, "--details", bad.details};
+        arguments.insert(arguments.end(), bad.more.begin(), bad.more.end());
+        if (std::find(bad.more.begin(), bad.more.end(), "-o") == bad.more.end())
+            arguments.insert(arguments.end(), {"-o", at("x.txt")});
+        const Result result = isowave(arguments);
+        EXPECT_EQ(result.exitCode, bad.code) << bad.says << ": " << result.err;
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_THAT(result.err, HasSubstr(bad.says));
+        EXPECT_EQ(folder.snapshot(), before) << bad.says;
+    }
+    EXPECT_EQ(isowave({"relief", (kData / "terrain" / "jacksboro.npy").string(), "-o", at("q"), "--layout",
+                       "quincunx", "--details", at("q.d")})
+                  .exitCode,
+              2);
+    EXPECT_EQ(folder.snapshot(), before);
+}
+
 TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
     const Folder folder;
     const auto out = (folder / "out").string(), terrain = (kData / "terrain" / "jacksboro.npy").string(),

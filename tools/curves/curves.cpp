@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "base/atomic_file.h"
 #include "base/peak_memory.h"
 #include "curves2d/draw.h"
-#include "curves2d/polygon_input.h"
 #include "isowave/curves.h"
 #include "isowave/error.h"
 #include "tools/commands.h"
@@ -44,16 +42,17 @@ struct DrawOptions {
     std::optional<std::filesystem::path> sheet;
 };
 
-// Writes the wanted levels and keeps what the report and the sheet hold.
+// Writes the wanted steps and keeps what the report and the sheet hold.
 class LevelWriter {
   public:
-    LevelWriter(const DrawOptions& draw, const curves2d::View& view, OutputFolder& out)
-        : draw_(draw), view_(view), out_(out) {}
+    LevelWriter(const CurveOptions& options, const DrawOptions& draw, const curves2d::View& view,
+                OutputFolder& out)
+        : options_(options), draw_(draw), view_(view), out_(out) {}
 
     void visit(const curves2d::LadderStep& step) {
         std::optional<std::string> file;
-        if (step.level() && !step.curves().rings.empty()) {
-            file = fmt::format("{}_L{}{}", out_.name(), *step.level(), extensionOf(draw_.format));
+        if (options_.isWanted(step) && !step.curves().rings.empty()) {
+            file = fmt::format("{}_{}{}", out_.name(), step.name(), extensionOf(draw_.format));
             write(*file, step);
             if (draw_.sheet) panels_.push_back(step.panel(view_));
         }
@@ -93,6 +92,7 @@ class LevelWriter {
         }
     }
 
+    const CurveOptions& options_;
     const DrawOptions& draw_;
     curves2d::View view_;
     OutputFolder& out_;
@@ -112,7 +112,7 @@ class CurvesCommand : public Command {
   private:
     void declareDrawing();
     void refuseContradictions() const;
-    CurvesReport climb(OutputFolder& out, Console& console, std::string& sheet) const;
+    CurvesReport climb(OutputFolder& out, ResultFile* pyramid, Console& console, std::string& sheet) const;
     void tellAll(const CurvesReport& report, const OutputFolder& out, Console& console) const;
 
     CurveOptions curves_;
@@ -122,9 +122,9 @@ class CurvesCommand : public Command {
 
 CurvesCommand::CurvesCommand()
     : Command({"curves", "INPUT", "a bitmap or polygons -> a ladder of closed planar curves, one a level",
-               "INPUT is an image (PNG, TIFF, BMP, PGM, PBM) or polygons (GeoJSON, TopoJSON, text with rings "
-               "as lines "
-               "'x y'). -o out/africa makes the folder out/africa with africa_L0.svg, africa_L1.svg, ...; a "
+               "INPUT is an image (PNG, TIFF, BMP, PGM, PBM), polygons (GeoJSON, TopoJSON, text with rings "
+               "as lines 'x y') or a pyramid (.iwc, by --pyramid). -o out/africa makes the folder out/africa "
+               "with africa_L0.svg, africa_L1.svg, ...; a "
                "level at "
                "which nothing is left has no file. Level L is step 2L: both axes halved L times. Outer rings "
                "have "
@@ -135,6 +135,7 @@ CurvesCommand::CurvesCommand()
     declareJson();
     curves_.declareInput(options_);
     curves_.declareFit(options_);
+    curves_.declareEdits(options_);
     declareThreads();
     declareTalk();
 }
@@ -151,19 +152,24 @@ void CurvesCommand::declareDrawing() {
     options_.flag("--table", "print a table of the steps: domain, control points, nodes, rings, area",
                   table_);
     options_.result("--sheet", "FILE", "one SVG with all levels side by side", draw_.sheet);
+    curves_.declarePyramid(options_);
 }
 
 void CurvesCommand::refuseContradictions() const {
     if (curves_.draw.smooth && draw_.format != CurveFormat::svg)
         throw UsageError("--smooth writes Bezier curves, which only --format svg has");
     curves_.ladder();
-    curves_.refuseForeign(arguments[0].string(), curves2d::looksLikePolygons(arguments[0]));
+    curves_.refuseForeign(arguments[0].string(), curveInputOf(arguments[0]));
 }
 
 // Climbs the ladder, writes the levels into `out`, and says what came of it.
-CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::string& sheet) const {
+CurvesReport CurvesCommand::climb(OutputFolder& out, ResultFile* pyramid, Console& console,
+                                  std::string& sheet) const {
     curves2d::Input input = curves2d::readInput(arguments[0], curves_.input(), console.progress());
     for (const std::string& remark : input.remarks) console.say(remark);
+    for (const std::string& remark : curves_.remarks()) console.say(remark);
+    input = curves_.prepared(std::move(input), console.progress());
+    if (pyramid) pyramid->write(curves2d::pyramidBytes(input));
     CurvesReport report;
     report.path = arguments[0].string();
     report.kind = input.kind;
@@ -171,7 +177,7 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, Console& console, std::stri
     report.hold = curves_.hold;
     DrawOptions draw = draw_;
     draw.curves = curves_.draw;
-    LevelWriter writer(draw, curves2d::viewOf(input), out);
+    LevelWriter writer(curves_, draw, curves2d::viewOf(input), out);
     report.ladder = curves2d::makeLadder(
         std::move(input), curves_.ladder(), [&](const curves2d::LadderStep& step) { writer.visit(step); },
         console.progress());
@@ -196,34 +202,26 @@ void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out,
 
 int CurvesCommand::run(Console& console) {
     refuseContradictions();
-    OutputFolder out(*output_, Inputs(arguments));
+    const Inputs inputs(curves_.inputs(arguments[0]));
+    for (const auto& place : options_.results()) inputs.refuse(place);
+    OutputFolder out(*output_, inputs);
     if (jsonToFile()) out.keepFree(*json_);
-    if (draw_.sheet) out.keepFree(*draw_.sheet);
-    std::optional<OutputFile> copyFolders;
-    std::optional<AtomicFile> copy;  // opened now: a place that cannot be written is found before the work
-    if (jsonToFile()) {
-        copyFolders.emplace(*json_);
-        copy.emplace(*json_);
-    }
+    for (const auto& place : {draw_.sheet, curves_.pyramid})
+        if (place) out.keepFree(*place);
+    // Opened now: a place that cannot be written is found before the work.
+    std::optional<ResultFile> copy, pyramid, sheet;
+    if (jsonToFile()) copy.emplace(*json_);
+    if (curves_.pyramid) pyramid.emplace(*curves_.pyramid);
 
     std::string sheetText;
-    const CurvesReport report = climb(out, console, sheetText);
+    const CurvesReport report = climb(out, pyramid ? &*pyramid : nullptr, console, sheetText);
     // What can fail for want of room comes first; then only names change.
-    std::optional<OutputFile> sheetPlace;
-    std::optional<AtomicFile> sheet;
-    if (draw_.sheet) {
-        sheetPlace.emplace(*draw_.sheet);
-        sheet.emplace(*draw_.sheet);
-        writeWhole(*sheet, sheetText);
-    }
-    if (copy) writeWhole(*copy, jsonOf(report));
+    if (draw_.sheet) sheet.emplace(*draw_.sheet);
+    if (sheet) sheet->write(sheetText);
+    if (copy) copy->write(jsonOf(report));
     out.commit();
-    if (sheet) {
-        sheet->commit();
-        sheetPlace->commit();
-    }
-    if (copy) copy->commit();
-    if (copyFolders) copyFolders->commit();
+    for (auto* beside : {&sheet, &pyramid, &copy})
+        if (*beside) (*beside)->commit();
     tellAll(report, out, console);
     return 0;
 }

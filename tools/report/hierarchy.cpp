@@ -5,6 +5,7 @@
 namespace isowave::tools {
 
 using subdivision::DecompositionReport;
+using subdivision::LevelsRebuildReport;
 using subdivision::PointError;
 using subdivision::Positions;
 using subdivision::RebuildReport;
@@ -17,6 +18,12 @@ Json errorJson(const PointError& error) { return {{"rms", error.rms}, {"largest"
 std::string relative(double value, double diagonal) {
     return diagonal > 0 ? fmt::format("{:.3g} ({:.2g} %)", value, 100 * value / diagonal)
                         : fmt::format("{:.3g}", value);
+}
+
+// What leaving details out has cost.
+std::string withoutOthers(const PointError& error, double extent) {
+    return fmt::format("without the others rms {}, largest {}", relative(error.rms, extent),
+                       relative(error.largest, extent));
 }
 
 std::string atPositions(Positions positions) {
@@ -43,6 +50,9 @@ std::string textOf(const DecompositionReport& report) {
                         finest ? "" : fmt::format("{:.3g}", level.detailLargest),
                         finest ? "" : relative(level.withoutDetails.rms, report.diagonal));
     }
+    if (report.kept < report.details && report.dropped.largest > 0)
+        out += fmt::format("\n{} of {} details are kept; {}\n", report.kept, report.details,
+                           withoutOthers(report.dropped, report.diagonal));
     return out;
 }
 
@@ -66,6 +76,9 @@ Json treeOf(const DecompositionReport& report) {
                           {"without_details", errorJson(level.withoutDetails)}});
     }
     j["levels"] = levels;
+    j["details"] = report.details;
+    j["kept"] = report.kept;
+    j["dropped"] = errorJson(report.dropped);
     return j;
 }
 
@@ -77,11 +90,7 @@ std::string textOf(const RebuildReport& report) {
     std::string out =
         fmt::format("{} vertices, {} faces after {} subdivision{}; {} of {} details", report.vertices,
                     report.faces, report.levels, report.levels == 1 ? "" : "s", report.kept, report.details);
-    if (report.error.largest > 0) {
-        out += fmt::format("; without the others rms {}, largest {}",
-                           relative(report.error.rms, report.diagonal),
-                           relative(report.error.largest, report.diagonal));
-    }
+    if (report.error.largest > 0) out += "; " + withoutOthers(report.error, report.diagonal);
     out += atPositions(report.positions) + "\n";
     if (report.shares.empty()) return out;
     out += "\nlongest details      kept   error: rms              largest\n";
@@ -118,6 +127,26 @@ Json treeOf(const RebuildReport& report) {
 }  // namespace
 
 std::string jsonOf(const RebuildReport& report) { return dumped(treeOf(report), 1); }
+
+std::string textOf(const LevelsRebuildReport& report) {
+    std::string out = fmt::format("{} points after {} subdivision{}; {} of {} details", report.points,
+                                  report.levels, report.levels == 1 ? "" : "s", report.kept, report.details);
+    if (report.error.largest > 0) out += "; " + withoutOthers(report.error, report.extent);
+    return out + atPositions(report.positions) + "\n";
+}
+
+std::string jsonOf(const LevelsRebuildReport& report) {
+    const Json tree = {{"version", 1},
+                       {"levels", report.levels},
+                       {"pieces", report.pieces},
+                       {"points", report.points},
+                       {"details", report.details},
+                       {"kept", report.kept},
+                       {"extent", report.extent},
+                       {"positions", name(report.positions)},
+                       {"error", errorJson(report.error)}};
+    return dumped(tree, 1);
+}
 
 std::string textOf(const SubdivisionReport& report) {
     return fmt::format("{}, {} level{}: {} vertices, {} faces{}\n", report.scheme, report.levels,

@@ -15,6 +15,10 @@ std::string jsonOf(const subdivision::DecompositionReport& report);
 std::string textOf(const subdivision::RebuildReport& report);
 std::string jsonOf(const subdivision::RebuildReport& report);
 
+// Of curves and of heights.
+std::string textOf(const subdivision::LevelsRebuildReport& report);
+std::string jsonOf(const subdivision::LevelsRebuildReport& report);
+
 struct SubdivisionReport {
     std::string scheme;
     int levels = 0;

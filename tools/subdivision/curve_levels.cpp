@@ -45,6 +45,7 @@ class CurveLevels : public Command {
     CurveReportOptions report_;
     std::optional<std::string> scheme_, mask_;
     std::optional<int> width_;
+    std::optional<std::filesystem::path> details_;
     bool limit_ = false;
 };
 
@@ -74,6 +75,11 @@ CurveLevels::CurveLevels()
     options_.value(
         "--keep", "N", "", "keep only the N longest details of each curve, into thresholded",
         [this](const std::string& v) { report_.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); });
+    options_.result(
+        "--details", "FILE",
+        "everything that rebuild needs to have the curves back from the coarsest level, without what "
+        "--threshold and --keep drop",
+        details_);
     options_.flag("--limit",
                   "write the points of every curve at their limit positions, on the curve that they control",
                   limit_);
@@ -94,6 +100,7 @@ CurveReport CurveLevels::reported(const CurveFile& file) const {
     options.mask = mask_.value_or("");
     options.width = width_.value_or(0);
     options.positions = positionsOf(limit_);
+    options.details = details_.has_value();
     try {
         return reportCurves(file.curves(), options);
     } catch (const InputError& error) {
@@ -109,12 +116,17 @@ int CurveLevels::run(Console& console) {
     requireLimit();
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
+    if (details_) out.keepFree(*details_);
     openJson();
+    std::optional<ResultFile> details;  // opened now: a place that cannot be written is found before the work
+    if (details_) details.emplace(*details_);
     const CurveFile file = CurveFile::read(arguments[0]);
     const CurveReport report = reported(file);
     writeFiles(out, filesOf(report, file, arguments[0].extension().string()));
+    if (details) details->write(report.details);
     readyToTell(console, jsonOf(report));
     out.commit();
+    if (details) details->commit();
     for (const auto& remark : remarks(report)) console.say(remark);
     tell(console, textOf(report), jsonOf(report));
     return 0;

@@ -1,4 +1,5 @@
-// isowave rebuild BASE --details FILE -o OUT: a base and its details -> the mesh at any level, edited or simplified.
+// isowave rebuild BASE --details FILE -o OUT: a base and its details -> the mesh, the curves or the heights at any level,
+// edited or simplified.
 #include <fmt/format.h>
 
 #include "isowave/error.h"
@@ -11,6 +12,7 @@
 #include "tools/output.h"
 #include "tools/report/hierarchy.h"
 #include "tools/subdivision/mesh_options.h"
+#include "tools/subdivision/rebuild_levels.h"
 
 namespace isowave::tools {
 namespace {
@@ -54,6 +56,8 @@ class Rebuild : public Command {
   private:
     void refuseContradictions() const;
     RebuildOptions rebuildOptions(const Hierarchy& hierarchy) const;
+    int runMesh(Console& console);
+    int runLevels(Console& console, DetailsOf kind);
 
     int depth_ = kAllLevels;
     std::optional<std::filesystem::path> details_, edited_;
@@ -64,41 +68,46 @@ class Rebuild : public Command {
 };
 
 Rebuild::Rebuild()
-    : Command({"rebuild", "BASE",
-               "a base mesh and its details -> the mesh at any level, edited or simplified",
-               "BASE and --details FILE come from reverse. --edited BASE2 is BASE with moved vertices: the "
-               "details "
-               "follow. --threshold and --keep leave short details out and measure what that costs."}) {
-    declareOutput("the mesh's file");
+    : Command(
+          {"rebuild", "BASE",
+           "a base and its details -> the mesh, curves or heights at any level, edited or simplified",
+           "BASE and --details FILE come from reverse; from curve-levels, where BASE is the level_K of its "
+           "--depth and OUT has its format; or from relief, where BASE is level_K.npy and OUT is .npy too. "
+           "--edited BASE2 is BASE with moved vertices, points or other heights: the details follow. "
+           "--threshold and --keep leave short details out and measure what that costs."}) {
+    declareOutput("the file of the mesh, the curves or the heights");
     declareJson();
     declareDepth(options_, "all", "how many subdivisions finer than BASE; finer details are not even read",
                  depth_);
-    options_.input("--details", "the details that reverse has written; needed", details_);
-    options_.input("--edited", "BASE with moved vertices, which takes its place", edited_);
+    options_.input("--details", "the details that reverse, curve-levels or relief has written; needed",
+                   details_);
+    options_.input("--edited", "BASE with moved vertices or other heights, which takes its place", edited_);
     options_.value("--frames", "global|local", "global",
-                   "details keep their direction in space, or turn with the surface (--edited)",
+                   "details keep their direction in space, or turn with the surface or curve (--edited; "
+                   "curves in the plane)",
                    [this](const std::string& v) {
                        frames_ = choice<Frames>(v, {{"global", Frames::global}, {"local", Frames::local}});
                    });
-    options_.value("--threshold", "LEN", "", "leave out details shorter than this, in the units of the mesh",
+    options_.value("--threshold", "LEN", "", "leave out details shorter than this, in the units of BASE",
                    [this](const std::string& v) { threshold_ = positive(v); });
-    options_.value("--keep", "N", "", "only the N longest details",
+    options_.value("--keep", "N", "", "only the N longest details; of each curve",
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
-    options_.flag("--error-table", "the error that is left with the longest 0 to 50 % of the details",
+    options_.flag("--error-table", "meshes: the error that is left with the longest 0 to 50 % of the details",
                   errorTable_);
-    options_.flag(
-        "--limit",
-        "write the mesh at its limit positions, on the surface that it controls: for pictures; BASE "
-        "and --edited are control positions",
-        limit_);
+    options_.flag("--limit",
+                  "write the result at its limit positions, on the surface or curve that it controls: for "
+                  "pictures; BASE "
+                  "and --edited are control positions",
+                  limit_);
     declareTalk();
 }
 
 void Rebuild::refuseContradictions() const {
-    if (!details_) throw UsageError("--details: is needed; isowave reverse --details FILE writes it");
+    if (!details_)
+        throw UsageError(
+            "--details: is needed; isowave reverse, curve-levels and relief write it with --details FILE");
     if (frames_ && !edited_) throw UsageError("--frames: belongs to --edited");
     if (threshold_ && keep_) throw UsageError("--threshold and --keep: give one of them");
-    polygonFormatOf(*output_);  // a wrong name is found before the work
 }
 
 RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
@@ -112,8 +121,28 @@ RebuildOptions Rebuild::rebuildOptions(const Hierarchy& hierarchy) const {
     return options;
 }
 
+int Rebuild::runLevels(Console& console, DetailsOf kind) {
+    if (errorTable_) throw UsageError("--error-table: is of meshes; leave it out");
+    openJson();
+    LevelsRebuild wanted{arguments[0], *details_, *output_,           edited_, frames_, depth_,
+                         threshold_,   keep_,     positionsOf(limit_)};
+    const auto [bytes, report] = kind == DetailsOf::curves ? rebuildCurves(wanted) : rebuildHeights(wanted);
+    ResultFile out(*output_);
+    out.write(bytes);
+    readyToTell(console, jsonOf(report));
+    out.commit();
+    tell(console, textOf(report), jsonOf(report));
+    return 0;
+}
+
 int Rebuild::run(Console& console) {
     refuseContradictions();
+    const DetailsOf kind = detailsOf(*details_);
+    return kind == DetailsOf::meshes ? runMesh(console) : runLevels(console, kind);
+}
+
+int Rebuild::runMesh(Console& console) {
+    polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();
     Hierarchy hierarchy = loadHierarchy(*details_, depth_);
     requireBase(arguments[0], *details_, hierarchy);

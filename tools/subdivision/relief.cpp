@@ -42,6 +42,7 @@ class Relief : public Command {
   private:
     ReliefReportOptions report_;
     std::optional<std::string> scheme_;
+    std::optional<std::filesystem::path> details_;
     bool limit_ = false;
 };
 
@@ -65,6 +66,9 @@ Relief::Relief()
                        report_.layout = choice<ReliefLayout>(
                            v, {{"rows", ReliefLayout::Rows}, {"quincunx", ReliefLayout::Quincunx}});
                    });
+    options_.result("--details", "FILE",
+                    "everything that rebuild needs to have the heights back from the coarsest level (rows)",
+                    details_);
     options_.flag("--limit",
                   "write levels and suppressed at their limit positions, on the surface that each controls; "
                   "reconstructed stays",
@@ -79,9 +83,15 @@ int Relief::run(Console& console) {
     report_.scheme = scheme_.value_or(report_.scheme);
     report_.positions = positionsOf(limit_);
     if (limit_) asked("--limit", [&] { return SurfaceLimit(surfaceScheme(report_.scheme)); });
+    report_.details = details_.has_value();
+    if (details_ && report_.layout == ReliefLayout::Quincunx)
+        throw UsageError("--details: belongs to --layout rows; quincunx leaves samples out");
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
+    if (details_) out.keepFree(*details_);
     openJson();
+    std::optional<ResultFile> details;  // opened now: a place that cannot be written is found before the work
+    if (details_) details.emplace(*details_);
     const auto& input = arguments[0];
     const Grid grid = readGrid(input);
     const ReliefReport report = [&] {
@@ -95,8 +105,10 @@ int Relief::run(Console& console) {
         console.say(fmt::format("quincunx takes {} of {} x {} samples, the largest hexagon in the middle",
                                 report.levels.front().patch, grid.rows, grid.columns));
     writeFiles(out, filesOf(report));
+    if (details) details->write(report.details);
     readyToTell(console, jsonOf(report));
     out.commit();
+    if (details) details->commit();
     tell(console, textOf(report), jsonOf(report));
     return 0;
 }

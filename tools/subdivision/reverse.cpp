@@ -1,11 +1,13 @@
 // isowave reverse MESH -o BASE: a mesh with subdivision connectivity, as a coarse base and details.
-#include "base/atomic_file.h"
+#include <sstream>
+
 #include "isowave/error.h"
 #include "isowave/subdivision.h"
 #include "subdivision/meshes/hierarchy.h"
 #include "subdivision/meshes/mesh_files.h"
 #include "tools/commands.h"
 #include "tools/console.h"
+#include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/hierarchy.h"
 #include "tools/subdivision/mesh_options.h"
@@ -24,6 +26,7 @@ class Reverse : public Command {
   private:
     DecomposeOptions decomposeOptions(const MeshScheme& scheme) const;
     PolygonMesh baseToWrite(const Hierarchy& hierarchy) const;
+    void refuseContradictions() const;
     void write(const Hierarchy& hierarchy) const;
 
     int depth_ = kAllLevels;
@@ -31,6 +34,8 @@ class Reverse : public Command {
     std::optional<double> creaseAngle_;
     bool limit_ = false;
     std::optional<std::filesystem::path> details_;
+    std::optional<double> threshold_;
+    std::optional<std::size_t> keep_;
 };
 
 Reverse::Reverse()
@@ -59,7 +64,19 @@ Reverse::Reverse()
                   "rebuild; --details stay those of the control positions",
                   limit_);
     options_.result("--details", "FILE", "the file that gets the details", details_);
+    options_.value("--threshold", "LEN", "",
+                   "leave details shorter than this, in the units of the mesh, out of the file",
+                   [this](const std::string& v) { threshold_ = positive(v); });
+    options_.value("--keep", "N", "", "only the N longest details go into the file, which is smaller then",
+                   [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     declareTalk();
+}
+
+void Reverse::refuseContradictions() const {
+    if (threshold_ && keep_) throw UsageError("--threshold and --keep: give one of them");
+    if ((threshold_ || keep_) && !details_)
+        throw UsageError(std::string(keep_ ? "--keep" : "--threshold") +
+                         ": says what goes into the file of --details; name that too");
 }
 
 DecomposeOptions Reverse::decomposeOptions(const MeshScheme& scheme) const {
@@ -79,33 +96,28 @@ PolygonMesh Reverse::baseToWrite(const Hierarchy& hierarchy) const {
 
 // The base and, when asked for, the details: both or none.
 void Reverse::write(const Hierarchy& hierarchy) const {
-    const std::string baseBytes = polygonMeshBytes(baseToWrite(hierarchy), polygonFormatOf(*output_));
-    OutputFile baseFolders(*output_);
-    std::optional<OutputFile> detailsFolders;
-    if (details_) detailsFolders.emplace(*details_);
-    AtomicFile base(*output_);
-    std::optional<AtomicFile> details;
+    ResultFile base(*output_);
+    std::optional<ResultFile> details;
     if (details_) details.emplace(*details_);
-    try {
-        base.stream() << baseBytes;
-        if (details) writeHierarchy(details->stream(), hierarchy);
-    } catch (const std::ios_base::failure&) {
-        throw OperationError(output_->string(), "writing failed; is the disk full? Nothing was left behind");
+    base.write(polygonMeshBytes(baseToWrite(hierarchy), polygonFormatOf(*output_)));
+    if (details) {
+        std::ostringstream bytes;
+        writeHierarchy(bytes, hierarchy);
+        details->write(bytes.str());
+        details->commit();
     }
-    if (details) details->commit();
     base.commit();
-    baseFolders.commit();
-    if (detailsFolders) detailsFolders->commit();
 }
 
 int Reverse::run(Console& console) {
     const auto& input = arguments[0];
+    refuseContradictions();
     const MeshScheme& scheme = schemeWanted(scheme_);
     const DecomposeOptions options = decomposeOptions(scheme);
     polygonFormatOf(*output_);  // a wrong name is found before the work
     openJson();
     const PolygonMesh mesh = readAndRemark(input, console);
-    const Hierarchy hierarchy = [&] {
+    Hierarchy hierarchy = [&] {
         try {
             return decompose(mesh, scheme, options, console.progress());
         } catch (const InputError& error) {
@@ -114,6 +126,7 @@ int Reverse::run(Console& console) {
     }();
     DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
     report.positions = positionsOf(limit_);
+    if (threshold_ || keep_) dropDetails(hierarchy, mesh, threshold_, keep_, report, console.progress());
     readyToTell(console, jsonOf(report));
     write(hierarchy);
     if (report.roundTrip > kMeshRoundTrip * report.diagonal)

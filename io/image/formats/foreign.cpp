@@ -118,6 +118,7 @@ constexpr Foreign kForeign[] = {
     {" .mat .npz .pkl .pt .rds ", "an archive of arrays",
      "save one array as NRRD, for example by pynrrd's nrrd.write()"},
     {" .inr ", "an INRIMAGE", "convert it to NIfTI or MetaImage"},
+    {" .iwc ", "a pyramid of curves", "draw its levels: isowave curves {0} -o {1}"},
     {" .zip ", "an archive", "unpack it first: unzip {0} -d {1}"},
     {" .tar .tgz .tbz .txz ", "an archive", "unpack it first: tar xf {0}"},
     {" .7z .rar ", "an archive", "unpack it first: 7z x {0}"},

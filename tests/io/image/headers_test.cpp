@@ -519,6 +519,7 @@ TEST_F(Headers, ForeignFilesAreNamedWithWhatToDo) {
     expect("part.amf", "<amf", "assimp export");
     expect("b.mnc", "x", "mnc2nii");
     expect("b.zip", "PK", "unzip");
+    expect("b.iwc", "ISOWAVEC", "isowave curves");
     expect("b.h5", "x", "h5dump");
     expect("b.raw.gz", "x", "gunzip");
     expect("b.am", "# AmiraMesh", "NRRD");

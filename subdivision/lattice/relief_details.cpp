@@ -1,0 +1,248 @@
+#include "subdivision/lattice/relief_details.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/read_file.h"
+#include "base/section_file.h"
+#include "isowave/error.h"
+#include "subdivision/lattice/relief.h"
+#include "subdivision/lattice/surface_limit.h"
+
+namespace isowave::subdivision {
+namespace {
+
+constexpr SectionFormat kFormat{kReliefDetailsMagic, 1, "file of details of heights",
+                                "isowave relief INPUT --details FILE -o FOLDER", "write it again"};
+constexpr std::uint32_t kHead = 1, kCoarse = 2, kDetails = 3;
+constexpr std::uint32_t kMostLevels = 20, kMostChannels = 4;  // as many as the command takes
+constexpr std::uint64_t kMostSide = std::uint64_t{1} << 28;
+constexpr double kSameRelief = 1e-6;  // of the range
+
+void require(bool holds) {
+    if (!holds) throw std::runtime_error("its head makes no sense; the file is damaged");
+}
+
+// ---- the file
+
+struct Head {
+    std::string scheme;
+    std::uint32_t levels, channels;
+    std::uint64_t rows, columns;
+};
+
+Head headOf(std::string_view bytes) {
+    ByteReader reader(bytes);
+    Head head;
+    head.scheme = reader.text();
+    head.levels = reader.u32();
+    head.channels = reader.u32();
+    head.rows = reader.u64();
+    head.columns = reader.u64();
+    require(head.levels <= kMostLevels && 1 <= head.channels && head.channels <= kMostChannels &&
+            reader.atEnd());
+    const std::uint64_t unit = std::uint64_t{1} << head.levels;
+    require(unit < head.rows && head.rows <= kMostSide && unit < head.columns && head.columns <= kMostSide);
+    return head;
+}
+
+// Steps along a side of the coarsest patch.
+int coarseSide(std::uint64_t count, std::uint32_t levels) {
+    const std::uint64_t unit = std::uint64_t{1} << levels;
+    return static_cast<int>((count - 1 + unit - 1) / unit);
+}
+
+ReliefParts partsOf(std::string_view bytes) {
+    const std::vector<Section> sections = sectionsOf(kFormat, bytes);
+    const auto content = [&](std::size_t at, std::uint32_t kind) -> const std::string& {
+        if (at >= sections.size() || sections[at].kind != kind)
+            throw std::runtime_error("ends before its last level; it is truncated or damaged");
+        return sections[at].content;
+    };
+    const Head head = headOf(content(0, kHead));
+    require(sections.size() == 2 + head.levels);
+    const auto a = static_cast<std::uint64_t>(coarseSide(head.columns, head.levels)),
+               b = static_cast<std::uint64_t>(coarseSide(head.rows, head.levels));
+    const auto nodesAt = [&](std::uint32_t level) { return ((a << level) + 1) * ((b << level) + 1); };
+    // Before the patch is made, whose rows take memory of their own.
+    std::vector<double> coarse = inflatedDoubles(content(1, kCoarse), nodesAt(0) * head.channels);
+    ReliefParts parts{head.rows,
+                      head.columns,
+                      {surfaceScheme(head.scheme).name,
+                       {Patch::parallelogram(static_cast<int>(a), static_cast<int>(b)),
+                        static_cast<int>(head.channels), std::move(coarse)},
+                       {}}};
+    for (std::uint32_t step = 0; step < head.levels; ++step)
+        parts.levels.details.push_back(inflatedDoubles(content(2 + step, kDetails),
+                                                       (nodesAt(step + 1) - nodesAt(step)) * head.channels));
+    std::reverse(parts.levels.details.begin(), parts.levels.details.end());
+    return parts;
+}
+
+// ---- details
+
+double squareOf(const double* detail, std::size_t channels) {
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c) sum += detail[c] * detail[c];
+    return sum;
+}
+
+// Every detail of all levels with the square of its size, the coarsest level first.
+std::vector<std::pair<double, double*>> allDetails(SurfaceLevels& levels) {
+    const auto channels = static_cast<std::size_t>(levels.coarse.channels);
+    std::vector<std::pair<double, double*>> all;
+    for (std::size_t k = levels.details.size(); k-- > 0;)
+        for (std::size_t i = 0; i < levels.details[k].size(); i += channels)
+            all.emplace_back(squareOf(&levels.details[k][i], channels), &levels.details[k][i]);
+    return all;
+}
+
+std::size_t nonzeroCount(SurfaceLevels& levels) {
+    const auto all = allDetails(levels);
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [](const auto& detail) { return detail.first != 0; }));
+}
+
+// Of equal sizes the coarser stays, then the earlier.
+void drop(SurfaceLevels& levels, const ReliefRebuildOptions& options) {
+    const auto channels = static_cast<std::size_t>(levels.coarse.channels);
+    auto all = allDetails(levels);
+    const auto clear = [&](double* detail) { std::fill_n(detail, channels, 0.0); };
+    if (options.threshold)
+        for (const auto& [square, detail] : all)
+            if (square < *options.threshold * *options.threshold) clear(detail);
+    if (!options.keep) return;
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (std::size_t k = *options.keep; k < all.size(); ++k) clear(all[k].second);
+}
+
+// ---- heights
+
+Grid picture(const ReliefParts& parts, const SurfaceField& field, int level) {
+    const Grid size{parts.rows, parts.columns, 1, {}};
+    return withoutPadding(reliefPicture(field, ReliefLayout::Rows), size, level);
+}
+
+void requireSize(const Grid& coarse, const Grid& grid) {
+    if (grid.rows == coarse.rows && grid.columns == coarse.columns && grid.channels == coarse.channels)
+        return;
+    throw InputError(fmt::format(
+        "has {} x {} samples of {} channels; the coarse heights of the details have {} x {} of {}", grid.rows,
+        grid.columns, grid.channels, coarse.rows, coarse.columns, coarse.channels));
+}
+
+// c moves by what the edit has changed, beyond the samples by what it has changed at the nearest one.
+void moveCoarse(SurfaceField& field, const Grid& before, const Grid& after) {
+    const auto rows = static_cast<std::size_t>(field.patch.lastRow() + 1),
+               columns = field.patch.size() / rows, channels = before.channels;
+    for (std::size_t r = 0; r < rows; ++r)
+        for (std::size_t column = 0; column < columns; ++column)
+            for (std::size_t c = 0; c < channels; ++c) {
+                const std::size_t i = std::min(r, before.rows - 1), j = std::min(column, before.columns - 1);
+                double& value = field.values[(r * columns + column) * channels + c];
+                // The samples themselves, not a sum that rounds.
+                if (i == r && j == column)
+                    value = after.at(i, j, c);
+                else
+                    value += after.at(i, j, c) - before.at(i, j, c);
+            }
+}
+
+double rangeOf(const Grid& grid) {
+    const auto [low, high] = std::minmax_element(grid.values.begin(), grid.values.end());
+    return *high - *low;
+}
+
+PointError differenceOf(const Grid& a, const Grid& b) {
+    PointError error;
+    for (std::size_t k = 0; k < a.values.size(); ++k) {
+        const double d = std::abs(a.values[k] - b.values[k]);
+        error.largest = std::max(error.largest, d);
+        error.rms += d * d;
+    }
+    error.rms = std::sqrt(error.rms / static_cast<double>(a.values.size()));
+    return error;
+}
+
+}  // namespace
+
+std::string reliefDetailsBytes(const ReliefParts& parts) {
+    ByteWriter head;
+    head.text(parts.levels.scheme);
+    head.u32(static_cast<std::uint32_t>(parts.levels.levels()));
+    head.u32(static_cast<std::uint32_t>(parts.levels.coarse.channels));
+    head.u64(parts.rows);
+    head.u64(parts.columns);
+    std::vector<Section> sections{{kHead, head.str()},
+                                  {kCoarse, deflatedDoubles(parts.levels.coarse.values)}};
+    for (std::size_t k = parts.levels.details.size(); k-- > 0;)
+        sections.push_back({kDetails, deflatedDoubles(parts.levels.details[k])});
+    return fileOf(kFormat, sections);
+}
+
+ReliefParts readReliefDetails(std::string_view bytes, const std::string& name) {
+    try {
+        return partsOf(bytes);
+    } catch (const std::runtime_error& error) {
+        throw InputError(name, error.what());
+    }
+}
+
+std::optional<MovedSample> firstMovedSample(const Grid& coarse, const Grid& grid) {
+    requireSize(coarse, grid);
+    const double allowed = kSameRelief * rangeOf(coarse);
+    for (std::size_t k = 0; k < grid.values.size(); ++k) {
+        const double distance = std::abs(grid.values[k] - coarse.values[k]);
+        const std::size_t sample = k / grid.channels;
+        if (distance > allowed) return MovedSample{sample / grid.columns, sample % grid.columns, distance};
+    }
+    return std::nullopt;
+}
+
+ReliefDetails ReliefDetails::load(const std::filesystem::path& path) {
+    return ReliefDetails(std::make_shared<const ReliefParts>(
+        readReliefDetails(readFile(path, "details of heights"), path.string())));
+}
+
+Grid ReliefDetails::coarseHeights() const {
+    return picture(*parts_, parts_->levels.coarse, parts_->levels.levels());
+}
+
+RebuiltRelief ReliefDetails::rebuild(const ReliefRebuildOptions& options) const {
+    SurfaceLevels levels = parts_->levels;
+    const int depth = options.depth == kAllLevels ? levels.levels() : options.depth;
+    if (depth > levels.levels())
+        throw InputError(
+            fmt::format("holds details for {} levels, but {} were asked for", levels.levels(), depth));
+    if (options.edited) {
+        requireSize(coarseHeights(), *options.edited);
+        moveCoarse(levels.coarse, coarseHeights(), *options.edited);
+    }
+    const int level = levels.levels() - depth;
+    levels.details.erase(levels.details.begin(), levels.details.begin() + level);
+    SurfaceFilters filters(surfaceScheme(levels.scheme));
+    RebuiltRelief result;
+    LevelsRebuildReport& report = result.report;
+    report.details = allDetails(levels).size();
+    SurfaceField field = reconstruct(levels, filters, 0);
+    if (options.threshold || options.keep) {
+        const Grid whole = picture(*parts_, field, level);
+        drop(levels, options);
+        field = reconstruct(levels, filters, 0);
+        report.error = differenceOf(picture(*parts_, field, level), whole);
+    }
+    report.kept = nonzeroCount(levels);
+    report.levels = depth;
+    report.pieces = 1;
+    report.positions = options.positions;
+    if (options.positions == Positions::limit) field = SurfaceLimit(filters.scheme()).of(field);
+    result.heights = picture(*parts_, field, level);
+    report.points = result.heights.rows * result.heights.columns;
+    report.extent = rangeOf(result.heights);
+    return result;
+}
+
+}  // namespace isowave::subdivision
