@@ -4,6 +4,7 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(EXPAT REQUIRED)
 find_package(libzip REQUIRED)
+find_package(draco REQUIRED)  # asks for no more than its own library
 find_package(PNG REQUIRED)
 find_package(TIFF 4.5 REQUIRED)
 find_package(TBB REQUIRED)
