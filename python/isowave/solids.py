@@ -516,7 +516,7 @@ def lod(
     Arguments have the names, defaults and meanings of the options of ``isowave lod`` (``isowave help lod``).
 
     source: one of
-        - a path: whatever ``isowave lod`` reads (NIfTI, NRRD, DICOM folders, STL, PLY, .vdb, ...)
+        - a path: whatever ``isowave lod`` reads (NIfTI, NRRD, DICOM folders, OME-Zarr, STL, PLY, .vdb, ...)
         - a NumPy array of three dimensions, bool, int8 to int64, uint8 to uint64, float32 or float64, of any strides and
           byte order; nothing is copied but a slab at a time. Its place is given by ``affine``, or by ``spacing``,
           ``origin`` and ``direction``
