@@ -4,6 +4,12 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(EXPAT REQUIRED)
 find_package(libzip REQUIRED)
+find_package(draco REQUIRED)  # asks for no more than its own library
+# Codecs of Zarr; Debian has no CMake packages of them.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(BLOSC REQUIRED IMPORTED_TARGET blosc)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 find_package(PNG REQUIRED)
 find_package(TIFF 4.5 REQUIRED)
 find_package(TBB REQUIRED)

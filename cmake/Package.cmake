@@ -53,7 +53,7 @@ mesh at every level, from full detail down to a blob.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libisowave-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-iostreams-dev, libtbb-dev, libgdcm-dev, libtiff-dev, libpng-dev, \
-zlib1g-dev, libexpat1-dev, libzip-dev, zipcmp, zipmerge, ziptool, libfmt-dev, libgmp-dev, libmpfr-dev")
+zlib1g-dev, libexpat1-dev, libzip-dev, zipcmp, zipmerge, ziptool, libdraco-dev, pkg-config, libblosc-dev, libzstd-dev, liblz4-dev, libfmt-dev, libgmp-dev, libmpfr-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "isowave, cmake, g++")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "The library: headers, static libraries and a CMake package.")
 

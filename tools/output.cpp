@@ -129,6 +129,19 @@ fs::path OutputFolder::place(const std::string& name) {
     return hidden_ / name;
 }
 
+fs::path OutputFolder::placeFolder(const std::string& name,
+                                   const std::function<bool(const fs::path&)>& mayReplace) {
+    refuseTaken(name);
+    const fs::path place = folder_ / name;
+    std::error_code ignored;
+    if (fs::exists(place, ignored) && !(fs::is_directory(place, ignored) && mayReplace(place)))
+        throw OperationError(place.string(),
+                             "is there, and nothing that this command has written; move it away");
+    names_.push_back(name);
+    folderNames_.insert(name);
+    return hidden_ / name;
+}
+
 void OutputFolder::commit() {
     std::error_code error;
     if (!fs::exists(folder_)) {
@@ -137,7 +150,8 @@ void OutputFolder::commit() {
             throw OperationError(folder_.string(),
                                  "cannot put the finished files here (" + error.message() + ")");
     } else {
-        for (const std::string& name : names_) refuseFolder(folder_ / name);
+        for (const std::string& name : names_)
+            if (!folderNames_.count(name)) refuseFolder(folder_ / name);
         replaceFiles();
         fs::remove_all(hidden_, error);
     }

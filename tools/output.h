@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,6 +66,10 @@ class OutputFolder {
     // Where to write the file that will be folder()/name. Throws OperationError when a folder has that name,
     // UsageError when it is taken.
     std::filesystem::path place(const std::string& name);
+    // The same for a folder, which the caller makes and fills. One that is there is replaced as a whole, and only where mayReplace(it)
+    // says so: otherwise OperationError.
+    std::filesystem::path placeFolder(const std::string& name,
+                                      const std::function<bool(const std::filesystem::path&)>& mayReplace);
     // Puts all files into the folder, in place of those of the same names; other files there stay. Throws
     // OperationError, and the folder is as it was.
     void commit();
@@ -78,7 +84,8 @@ class OutputFolder {
     std::vector<std::filesystem::path> keptFree_;
     MadeFolders parents_;
     std::filesystem::path hidden_;
-    std::vector<std::string> names_;
+    std::vector<std::string> names_;     // of files and of folders
+    std::set<std::string> folderNames_;  // those of folders
 };
 
 // Into an open file, all of it: a full disk is found here. commit() is the caller's. Throws OperationError.

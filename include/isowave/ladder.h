@@ -24,6 +24,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -302,5 +303,40 @@ ISOWAVE_EXPORT bool needsLevel0(const LevelOptions& options);
 // Throws UsageError for options that exclude each other, ranges that end before they begin and regions that are none, before
 // anything is read.
 ISOWAVE_EXPORT void checkRanges(const LevelOptions& options);
+
+// ---- a ladder in tiles
+
+// A ladder of meshes as a viewer loads it over a network: cubes of the grid one by one, coarse from afar and fine near by.
+enum class TileFormat {
+    neuroglancer,  // neuroglancer_multilod_draco: info, 1.index, 1
+    tiles3d        // 3D Tiles 1.1: tileset.json, L0/0_0_0.glb, ...
+};
+
+struct TileLevel {
+    TriangleMesh mesh = {};
+    double voxel = 1;  // of the level, world units: what detail there is
+    double error = 0;  // from level 0, world units: 3D Tiles' geometricError
+};
+
+struct TileOptions {
+    Space space = Space::unspecified;  // as in MeshWriteOptions
+    double metresPerUnit = 0.001;
+    std::uint64_t segment = 1;  // neuroglancer's number of the solid
+};
+
+// levels: finest first, each voxel about twice the one before. A tile of level l is a cube of 2^l chunks, and a chunk is the
+// largest power of two (of a unit; of a metre in 3D Tiles) that is at most 64 voxels of the first level. Triangles are cut where they cross
+// the grid, in neuroglancer's levels from 1 on the middles of tiles too. Vertices are rounded to 1/65535 (neuroglancer) or 2^-22 of a
+// tile's side, and those on a border are the same point for both sides: the tiles of a level, put together, are closed
+// and 2-manifold where the mesh is.
+//
+// neuroglancer: positions are world units, which the info's transform takes to nanometres; no normals. 3D Tiles: metres, z up in
+// the tileset and Y up in the GLBs, as glTF has it; normals where meshes have them.
+//
+// The folder appears whole or not at all; tiles that are there are replaced. Throws OperationError where writing fails or the folder holds
+// something else, InputError where no level has a triangle, Cancelled.
+ISOWAVE_EXPORT void writeTiles(const std::filesystem::path& folder, std::span<const TileLevel> levels,
+                               TileFormat format, const TileOptions& options = {},
+                               const Progress& progress = {});
 
 }  // namespace isowave

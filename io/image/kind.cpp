@@ -45,6 +45,8 @@ const std::vector<ImageFormat>& imageFormats() {
         {FileKind::mrc, "MRC", {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".st", ".ali"}, true, true},
         {FileKind::npy, "NumPy", {".npy"}, true, true},
         {FileKind::vti, "VTK ImageData", {".vti"}, true, true},
+        // A folder.
+        {FileKind::zarr, "OME-Zarr", {".zarr"}, false, false},
         {FileKind::tiff, "TIFF", {".tif", ".tiff"}, false, false},
         {FileKind::png, "PNG", {".png"}, false, false},
         {FileKind::dicom, "DICOM", {".dcm", ".dicom"}, false, false},

@@ -21,6 +21,8 @@
 #include "io/image/kind.h"
 #include "io/image/plain.h"
 #include "io/image/slices.h"
+#include "io/image/zarr/multiscale.h"
+#include "io/image/zarr/open.h"
 #include "isowave/error.h"
 
 namespace isowave::imageio {
@@ -69,6 +71,7 @@ std::map<FileKind, std::vector<fs::path>> filesByKind(Iterator files) {
 
 // Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
 SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
+    if (isZarr(folder)) return openZarr(folder, options);
     auto files = filesByKind(fs::directory_iterator(folder));
     const std::size_t png = files[FileKind::png].size(), tiff = files[FileKind::tiff].size();
     if (files[FileKind::dicom].empty() && png == 0 && tiff == 0)
@@ -96,6 +99,8 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (kind == FileKind::mrc) return openMrc(path, options);
     if (kind == FileKind::npy) return openNpyVolume(path, options);
     if (kind == FileKind::vti) return openVti(path, options);
+    if (kind == FileKind::zarr)
+        throw InputError(name, "is a file; a Zarr store is a folder; unzip it, if it is one in a file");
     if (kind == FileKind::none)
         throw InputError(name,
                          foreignText(path).value_or("is of no known image format (" + imageFormatNames() +
@@ -131,8 +136,8 @@ void refuseForeignOptions(const std::string& name, const Header& header, const I
         {"--volume", options.volume.has_value(), formatsOfVolumes()},
         {"--series", options.series.has_value(), {"DICOM"}},
         {"--stack", options.stack.has_value(), {"DICOM"}},
-        {"--time", options.time.has_value(), {"DICOM", "TIFF"}},
-        {"--channel", options.channel.has_value(), {"TIFF"}},
+        {"--time", options.time.has_value(), {"DICOM", "TIFF", "OME-Zarr", "Zarr"}},
+        {"--channel", options.channel.has_value(), {"TIFF", "OME-Zarr", "Zarr"}},
         {"--resample-slices", options.resampleSlices, {"DICOM"}},
     };
     for (const Choice& choice : choices) {

@@ -121,7 +121,14 @@ void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const s
     std::vector<Point> centred(mesh.points.begin(), mesh.points.end());
     for (Point& p : centred)
         for (std::size_t a = 0; a < 3; ++a) p[a] -= origin[a];
-    const std::vector<FloatPoint> points = separateFloats(centred, name, "GLB");
+    MeshView around = mesh;
+    around.points = centred;
+    writeGlbAround(sink, around, name, title, origin);
+}
+
+void writeGlbAround(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title,
+                    const Point& origin) {
+    const std::vector<FloatPoint> points = separateFloats(mesh.points, name, "GLB");
     std::string text =
         describe(mesh, points, origin, title).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');

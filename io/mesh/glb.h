@@ -13,4 +13,8 @@ namespace isowave {
 // 4 GiB are not enough. REQUIRES: triangles, in metres, Y up.
 void writeGlb(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title);
 
+// Points that are relative to `origin` already: it is the node's translation, and points that float32 holds are stored as they are.
+void writeGlbAround(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title,
+                    const Point& origin);
+
 }  // namespace isowave

@@ -409,6 +409,7 @@ class Ladder(Sequence[Level]):
         format: str = "ply",
         space: Optional[str] = None,
         colour: Optional[str] = None,
+        tiles: Optional[str] = None,
         threads: Optional[int] = None,
         progress: Optional[ProgressLike] = None,
     ) -> list[str]:
@@ -420,11 +421,13 @@ class Ladder(Sequence[Level]):
         space: "lps" or "ras", the axes of the written coordinates, for images and meshes that say SPACE=.
         colour: "distance", with ply, glb and vtp: each vertex's distance to level 0, as distance_to_level0.
 
-        Raises UsageError for a file that is the ladder's own input, and for a colour where the format has no place for it or the ladder no
+        tiles: "neuroglancer" or "3d-tiles": also the levels in tiles, a folder, as ``isowave lod --tiles`` has it.
+
+        Raises UsageError for a file that is the ladder's own input, for tiles of steps, and for a colour where the format has no place for it or the ladder no
         level 0; OperationError where writing fails.
         """
         watch = Watch(progress, threads)
-        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), (colour or "").lower(), self._inputs, watch)
+        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), (colour or "").lower(), tiles or "", self._inputs, watch)
         return [os.fspath(path) for path in paths]
 
     def _field(self, step: int) -> Field:
@@ -513,7 +516,7 @@ def lod(
     Arguments have the names, defaults and meanings of the options of ``isowave lod`` (``isowave help lod``).
 
     source: one of
-        - a path: whatever ``isowave lod`` reads (NIfTI, NRRD, DICOM folders, STL, PLY, .vdb, ...)
+        - a path: whatever ``isowave lod`` reads (NIfTI, NRRD, DICOM folders, OME-Zarr, STL, PLY, .vdb, ...)
         - a NumPy array of three dimensions, bool, int8 to int64, uint8 to uint64, float32 or float64, of any strides and
           byte order; nothing is copied but a slab at a time. Its place is given by ``affine``, or by ``spacing``,
           ``origin`` and ``direction``

@@ -14,6 +14,7 @@
 #include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
+#include "tools/solids/tiles/tile_choice.h"
 
 namespace isowave::python {
 namespace {
@@ -95,6 +96,15 @@ WriteChoice choiceOf(const MadeLadder& made, const std::string& format, const st
     return {*chosen, {spaceChoice.of(made.space), made.metresPerUnit}, colourChoice};
 }
 
+tools::TileChoice tilesOf(const MadeLadder& made, const std::string& format) {
+    tools::TileChoice tiles;
+    tools::OptionList options;
+    tiles.declare(options);
+    if (!format.empty()) take({{"--tiles", format}}, options);
+    tiles.requireLevels(made.choices.levels, made.choices.budgets);
+    return tiles;
+}
+
 tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names) {
     tools::LadderFiles files;
     for (std::size_t i = 0; i < made.levelCount(); ++i)
@@ -107,14 +117,15 @@ tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names
 // What `isowave lod -o FOLDER` writes. inputs: what no file may take the place of.
 std::vector<std::filesystem::path> save(const MadeLadder& made, const std::filesystem::path& folder,
                                         const std::string& format, const std::string& space,
-                                        const std::string& colour,
+                                        const std::string& colour, const std::string& tiles,
                                         const std::vector<std::filesystem::path>& inputs,
                                         const py::object& watch) {
     const WriteChoice choice = choiceOf(made, format, space, colour);
+    const tools::TileChoice tileChoice = tilesOf(made, tiles);
     return watched(watch, [&](const Progress& progress) {
         tools::OutputFolder out(folder, tools::Inputs(inputs));
         const tools::MeshNames names(out.name(), choice.format, made.choices.levels, made.choices.budgets);
-        const tools::LadderFiles files = filesOf(made, names);
+        tools::LadderFiles files = filesOf(made, names);
         std::vector<std::string> all = files.levels;
         all.insert(all.end(), files.budgets.begin(), files.budgets.end());
         std::vector<std::filesystem::path> places;
@@ -124,6 +135,13 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
                 progress("write", static_cast<double>(i) / static_cast<double>(all.size()));
                 choice.write(out.place(all[i]), made, i, colours, progress);
                 places.push_back(out.folder() / all[i]);
+            }
+            if (const auto writer = tileChoice.writerFor(out, made.ladder.input, choice.options)) {
+                for (std::size_t i = 0; i < made.levelCount(); ++i)
+                    tools::addTiles(*writer, made.ladder.levels[i].report, made.mesh(i), progress);
+                writer->finish();
+                files.tiles = tileChoice.folderOf(out.name());
+                places.push_back(out.folder() / files.tiles);
             }
             tools::writeFiles(out, {{"report.json", tools::jsonOf(made.ladder, files)}});
             progress.check();

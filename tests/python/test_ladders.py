@@ -266,7 +266,7 @@ def test_every_option_of_the_command_is_an_argument():
     shown = command("lod", "--help").stdout
     names = {name.replace("-", "_") for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
     assert len(names) > 30 and names - parameters == {
-        "output", "format", "colour", "json", "view", "glb_lods", "quiet", "verbose", "dry_run", "list",
+        "output", "format", "colour", "json", "view", "glb_lods", "tiles", "quiet", "verbose", "dry_run", "list",
     }  # fmt: skip
     of_curves = {name[2:].replace("-", "_") for name in _native.curve_option_names()}
     assert of_curves <= set(inspect.signature(plane.curves).parameters)
@@ -288,3 +288,17 @@ def test_names_that_look_like_html_are_text(tmp_path):
     path = tmp_path / "<b>&part.stl"
     path.write_bytes(GEAR.read_bytes())
     assert "&lt;b&gt;&amp;part.stl" in isowave.lod(path, voxels=32, levels=0)._repr_html_()
+
+
+def test_tiles_are_those_of_the_command(tmp_path):
+    ladder = isowave.lod(GEAR, voxels=32, levels=(0, 1))
+    for tiles in ("neuroglancer", "3d-tiles"):
+        paths = ladder.save(tmp_path / "out/gear", tiles=tiles)
+        assert str(tmp_path / f"out/gear/gear_{tiles}") in paths
+        command("lod", GEAR, "--voxels", 32, "--levels", "0..1", "--tiles", tiles, "-o", tmp_path / "by/gear")
+        made, expected = tmp_path / f"out/gear/gear_{tiles}", tmp_path / f"by/gear/gear_{tiles}"
+        names = sorted(p.relative_to(expected) for p in expected.rglob("*") if p.is_file())
+        assert names == sorted(p.relative_to(made) for p in made.rglob("*") if p.is_file()) and len(names) >= 3
+        assert all((made / name).read_bytes() == (expected / name).read_bytes() for name in names)
+    with pytest.raises(isowave.UsageError, match="give --levels"):
+        isowave.lod(GEAR, voxels=32, steps=(0, 1)).save(tmp_path / "steps", tiles="3d-tiles")

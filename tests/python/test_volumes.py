@@ -235,3 +235,22 @@ def test_errors_are_the_commands_one_line(tmp_path):
 
 def test_an_assumed_spacing_is_said(ball):
     assert any("1 x 1 x 1 mm is assumed" in remark for remark in isowave.lod(ball, levels=0).remarks)
+
+
+def test_an_ome_zarr_gives_what_its_array_gives_to_the_bit(cranium, tmp_path):
+    zarr = pytest.importorskip("zarr")
+    array, _ = cranium
+    group = zarr.open_group(str(tmp_path / "scan.ome.zarr"), mode="w")
+    group.create_dataset("0", data=array.transpose(2, 1, 0), chunks=(16, 40, 40), dimension_separator="/")
+    axes = [{"name": name, "type": "space", "unit": "micrometer"} for name in "zyx"]
+    steps = [{"type": "scale", "scale": [500, 250, 250]}, {"type": "translation", "translation": [1000, 0, -2000]}]
+    group.attrs["multiscales"] = [{"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": steps}]}]
+    of_array = isowave.lod(array, spacing=(0.25, 0.25, 0.5), origin=(-2, 0, 1), iso=300, levels=(0, 2))
+    for path in (tmp_path / "scan.ome.zarr", tmp_path / "scan.ome.zarr/0"):
+        assert same(isowave.lod(path, iso=300, levels=(0, 2)), of_array)
+    assert same([isowave.analyse(tmp_path / "scan.ome.zarr", iso=300).field(3).polygonize()],
+                [isowave.analyse(array, spacing=(0.25, 0.25, 0.5), origin=(-2, 0, 1), iso=300).field(3).polygonize()])  # fmt: skip
+    words = ("lod", tmp_path / "scan.ome.zarr", "-o", tmp_path / "out", "--channel", 1)
+    with pytest.raises(isowave.UsageError) as caught:
+        isowave.lod(tmp_path / "scan.ome.zarr", channel=1)
+    assert str(caught.value) == complaint(*words)

@@ -251,6 +251,7 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
         report["budgets"].push_back(budgetJson(ladder.budgets[i].report, nameAt(files.budgets, i)));
     if (!files.lods.empty()) report["glb_lods"] = files.lods;
     if (!files.view.empty()) report["view"] = files.view;
+    if (!files.tiles.empty()) report["tiles"] = files.tiles;
     report["steps"] = ladder.steps;
     report["coefficients_stored"] = ladder.coefficientsStored;
     report["control_points"] = ladder.controlPoints;

@@ -12,8 +12,9 @@ namespace isowave::tools {
 // What the files of the meshes are called, one for each of ladder.levels and ladder.budgets; "" where there is none.
 struct LadderFiles {
     std::vector<std::string> levels, budgets;
-    std::string lods = {};  // the file of --glb-lods
-    std::string view = {};  // the page of --view
+    std::string lods = {};   // the file of --glb-lods
+    std::string view = {};   // the page of --view
+    std::string tiles = {};  // the folder of --tiles
 };
 
 // The bytes of report.json.

@@ -32,6 +32,7 @@
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/parts.h"
 #include "tools/solids/solid_options.h"
+#include "tools/solids/tiles/tile_choice.h"
 #include "tools/view/level_facts.h"
 #include "tools/view/pages.h"
 
@@ -47,8 +48,9 @@ struct MeshWriter {
     MeshWriteOptions options;
     MeshColours colours;
     OutputFolder& out;
-    std::unique_ptr<view::Page> page;  // of --view
-    std::optional<GlbLods> lods;       // of --glb-lods
+    std::unique_ptr<view::Page> page;   // of --view
+    std::optional<GlbLods> lods;        // of --glb-lods
+    std::unique_ptr<TileWriter> tiles;  // of --tiles
     Progress progress;
     LadderFiles files;
     double firstVoxel = 0;
@@ -68,6 +70,7 @@ struct MeshWriter {
             files.levels.push_back(names.ofStep(report.step));
             fromLevel0 = fromLevel0 || report.step == 0;
             if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
+            if (tiles) addTiles(*tiles, report, mesh, progress);
             if (report.step == 0) colours.setLevel0(mesh);
             write(files.levels.back(), report, mesh, report.step == 0);
         };
@@ -215,6 +218,7 @@ class Lod : public Command {
     std::optional<MeshFormat> format_;
     SpaceChoice space_;
     ColourChoice colour_;
+    TileChoice tiles_;
     bool view_ = false;
     std::optional<bool> quantizedLods_;  // --glb-lods
 };
@@ -260,6 +264,7 @@ Lod::Lod()
                    [this](const std::string& v) {
                        quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
                    });
+    tiles_.declare(options_);
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareRegions(options_, levels_);
@@ -276,6 +281,7 @@ void Lod::refuseTaken(const MeshNames& names, OutputFolder& out) const {
     for (const std::string& file : names.all()) out.refuseTaken(file);
     if (view_) out.refuseTaken(names.ofPage());
     if (quantizedLods_) out.refuseTaken(names.ofLods());
+    if (tiles_.format) out.refuseTaken(tiles_.folderOf(out.name()));
 }
 
 std::optional<GlbLods> Lod::lodsOf(const Solid& solid) const {
@@ -293,6 +299,7 @@ void Lod::check() {
     colour_.requireLevel0(levels_, budgets_);
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
+    tiles_.requireLevels(levels_, budgets_);
     if (budgets_.any() && !levels_.fine.empty())
         throw UsageError("--fine and budgets exclude each other: a budget chooses among whole levels");
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
@@ -322,10 +329,15 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
                       .out = out,
                       .page = pageOf(solid, out.name()),
                       .lods = lodsOf(solid),
+                      .tiles = tiles_.writerFor(out, solid.input(), options),
                       .progress = progress,
                       .files = {}};
     Ladder ladder = makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), progress);
     writer.writeLods();
+    if (writer.tiles) {
+        writer.tiles->finish();
+        writer.files.tiles = tiles_.folderOf(out.name());
+    }
     writer.writePage();
     return {std::move(ladder), std::move(writer.files), unit};
 }

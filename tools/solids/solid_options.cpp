@@ -148,7 +148,7 @@ void declareImage(OptionList& options, SolidOptions& solid) {
     options.value("--stack", "N", "",
                   "DICOM with several stacks of slices, or segments: which one, as the message lists them",
                   [&](const std::string& v) { solid.image.stack = integer(v, 1, kHuge); });
-    options.value("--channel", "N", "", "TIFF with several channels: which one, from 1 on",
+    options.value("--channel", "N", "", "TIFF or OME-Zarr with several channels: which one, from 1 on",
                   [&](const std::string& v) { solid.image.channel = integer(v, 1, kHuge); });
     options.value("--time", "N", "", "several volumes at one place (times, echoes): which one, from 1 on",
                   [&](const std::string& v) { solid.image.time = integer(v, 1, kHuge); });

@@ -160,10 +160,6 @@ std::optional<std::string> folderText(const fs::path& folder) {
     std::error_code ignored;
     for (auto entry = fs::directory_iterator(folder, ignored); entry != fs::directory_iterator();
          entry.increment(ignored)) {
-        const std::string name = entry->path().filename().string();
-        if (name == ".zarray" || name == ".zgroup" || name == "zarr.json")
-            return "is a Zarr array; save it as TIFF, for example by tifffile.imwrite('out.tif', "
-                   "zarr.open('...')[:])";
         ++count[toLower(entry->path().extension().string())];
     }
     for (const char* extension : {".bmp", ".jpg", ".jpeg", ".gif"})

@@ -182,6 +182,7 @@ std::optional<double> millimetresIn(std::string unit) {
                                                         {"nanometre", 1e-6},
                                                         {"nanometers", 1e-6},
                                                         {"nanometres", 1e-6},
+                                                        {"angstrom", 1e-7},
                                                         {"in", 25.4},
                                                         {"inch", 25.4},
                                                         {"inches", 25.4}};

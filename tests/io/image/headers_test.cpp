@@ -528,9 +528,6 @@ TEST_F(Headers, ForeignFilesAreNamedWithWhatToDo) {
     fs::create_directory(folder / "bmp");
     put(folder / "bmp" / "1.bmp", "BM");
     EXPECT_THAT(refusal(folder / "bmp"), AllOf(HasSubstr("holds 1 slices as .bmp"), HasSubstr("mogrify")));
-    fs::create_directory(folder / "a.zarr");
-    put(folder / "a.zarr" / ".zarray", "{}");
-    EXPECT_THAT(refusal(folder / "a.zarr"), HasSubstr("is a Zarr array"));
 }
 
 // ---- any format
