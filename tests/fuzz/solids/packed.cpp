@@ -13,13 +13,13 @@
 namespace isowave::fuzz {
 namespace {
 
-using compress::Section;
+using compress::kPackedFormat;
 
 // To the bit and within a bound: other sections are read by other code.
 std::vector<Section> smallSections(bool lossless) {
     const auto sectionsWith = [](std::optional<double> bound) {
         const BSplineField field = zoo::distanceField(zoo::smoothSolids().at(1));
-        return compress::sectionsOf(compress::pack(field, "small", {.bound = bound}).bytes);
+        return sectionsOf(kPackedFormat, compress::pack(field, "small", {.bound = bound}).bytes);
     };
     static const std::array<std::vector<Section>, 2> kinds{sectionsWith({}), sectionsWith(0.1)};
     return kinds[lossless ? 0 : 1];
@@ -48,7 +48,7 @@ void changeSections(std::vector<Section>& sections, Bytes& bytes) {
         case 2:
             return std::iter_swap(any(), any());
         case 3:
-            any()->kind = static_cast<compress::SectionKind>(bytes.next());
+            any()->kind = static_cast<std::uint32_t>(bytes.next());
             return;
         default:
             changeContent(any()->content, bytes);
@@ -59,11 +59,11 @@ std::string changedFile(std::string_view input) {
     Bytes bytes(input);
     std::vector<Section> sections = smallSections(bytes.flag());
     for (int k = bytes.between(0, 4); k-- > 0;) changeSections(sections, bytes);
-    return compress::fileOf(sections);
+    return isowave::fileOf(kPackedFormat, sections);
 }
 
 Answer readPacked(std::string_view input) {
-    const bool isFile = input.substr(0, compress::kMagic.size()) == compress::kMagic;
+    const bool isFile = input.substr(0, kPackedFormat.magic.size()) == kPackedFormat.magic;
     const auto path = fileOf(isFile ? std::string(input) : changedFile(input), "small.iwz");
     return answerOf(path.string(), [&] {
         const Pyramid pyramid = Pyramid::open(path);
