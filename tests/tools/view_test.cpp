@@ -140,6 +140,9 @@ TEST(View, OfCurvesAndOfDetailsHasTheirLevels) {
         EXPECT_GE(documentOf(page)["levels"].size(), 5u) << format;
         fs::remove_all(africa);
     }
+    succeed({"curves", kData + "curves2d/africa.geojson", "--pixels", "64", "--steps", "0..3", "-o", africa});
+    succeed({"view", africa, "-o", page});
+    EXPECT_EQ(namesIn(documentOf(page)), (std::vector<std::string>{"L0", "L0a", "L1", "L1a"}));
     const std::string details = (folder / "anchor.details").string();
     succeed({"reverse", kData + "meshes/anchor_semiregular_tri.off", "--scheme", "loop", "-o",
              (folder / "b.obj").string(), "--details", details});

@@ -195,12 +195,16 @@ PagePointer pageOfReport(const fs::path& path, Console& console) {
 
 // ---- folders
 
-// The number behind the last L or s of "part_L12.ply"; nothing for other names.
+// Where a file stands among its folder's: twice the number behind the last L or s of "part_L12.ply", and 1 more for the half
+// step "coast_L12a.svg"; nothing for other names.
 std::optional<long> numberOf(const fs::path& file) {
-    const std::string stem = withoutGz(file).stem().string();
+    std::string stem = withoutGz(file).stem().string();
+    const bool isHalf = stem.ends_with('a');
+    if (isHalf) stem.pop_back();
     const auto at = stem.find_last_not_of("0123456789");
-    if (at == stem.npos || at + 1 == stem.size() || (stem[at] != 'L' && stem[at] != 's')) return std::nullopt;
-    return std::stol(stem.substr(at + 1, 9));
+    if (at == stem.npos || at + 1 == stem.size() || (stem[at] != 'L' && (isHalf || stem[at] != 's')))
+        return std::nullopt;
+    return 2 * std::stol(stem.substr(at + 1, 9)) + isHalf;
 }
 
 PagePointer pageOfFolder(const fs::path& folder, Console& console) {
