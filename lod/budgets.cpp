@@ -31,10 +31,11 @@ void checkBudgets(const BudgetOptions& options, bool openBorder) {
 }
 
 Budgets::Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles,
-                 std::shared_ptr<const TriangleMesh> input)
+                 std::shared_ptr<const TriangleMesh> input, StepOrder order)
     : limits_{options.maxGenus, options.minComponent},
       wholeTriangles_(inputTriangles),
-      input_(std::move(input)) {
+      input_(std::move(input)),
+      order_(std::move(order)) {
     for (const std::int64_t n : options.triangles)
         asked_.push_back({{Budget::Kind::triangles, static_cast<double>(n)}, 0});
     for (const double ratio : options.ratios) asked_.push_back({{Budget::Kind::triangles, 0}, ratio});
@@ -46,7 +47,8 @@ Budgets::Budgets(const BudgetOptions& options, std::optional<std::int64_t> input
 void Budgets::add(int step, const BSplineField& field, const TriangleMesh& mesh,
                   const MeshTopology& topology) {
     if (!wholeTriangles_) wholeTriangles_ = topology.triangles;
-    steps_.push_back({step, mesh, topology, field.transform().voxelSize().length()});
+    steps_.push_back(
+        {step, mesh, topology, field.transform().voxelSize().length(), order_.levelOf(step).has_value()});
 }
 
 BudgetReport Budgets::asReport(const Asked& asked, const Budget& budget) const {
@@ -77,6 +79,7 @@ BudgetLevel Budgets::made(const Asked& asked, BudgetSolver& solver, const Ladder
     BudgetLevel level{asReport(asked, asked.ratio > 0 ? budget : asked.budget), {}};
     BudgetReport& report = level.report;
     report.step = chosen.step;
+    report.level = order_.levelOf(chosen.step);
     report.why = std::move(chosen.why);
     {
         const StageClock::Scope scope(clock, "measure");

@@ -21,7 +21,7 @@ class Budgets {
     // inputTriangles: what a ratio is a share of; nothing: the triangles of level 0. input: what a tolerance refers to; null:
     // level 0.
     Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles,
-            std::shared_ptr<const TriangleMesh> input);
+            std::shared_ptr<const TriangleMesh> input, StepOrder order);
 
     bool wanted() const { return !asked_.empty(); }
     // REQUIRES: steps in ascending order, step 0 first; the mesh is not empty.
@@ -45,6 +45,7 @@ class Budgets {
     std::vector<StepMesh> steps_;
     std::optional<std::int64_t> wholeTriangles_;
     std::shared_ptr<const TriangleMesh> input_;
+    StepOrder order_;
     std::optional<double> level0ToInput_;  // no point of either is farther from the other
 };
 

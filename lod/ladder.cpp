@@ -59,14 +59,14 @@ std::optional<std::int64_t> trianglesOf(const Solid& solid) {
 // Makes and measures one mesh a step, level 0 first: the others are measured against it.
 class Maker {
   public:
-    Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options,
+    Maker(const StepChoice& choice, Budgets& budgets, const LevelOptions& options, const StepOrder& order,
           const std::optional<Border>& openBorder, const InputTruth& truth,
           std::shared_ptr<const TriangleMesh> input, const LadderVisitor& visitor, const Progress& progress,
           StageClock& clock)
         : choice_(choice),
           budgets_(budgets),
           deviation_(options.deviation),
-          mesher_(options, openBorder,
+          mesher_(options, order, openBorder,
                   budgets.wanted() && !options.levels && !options.steps ? LevelMesher::Facts::ofBudget
                                                                         : LevelMesher::Facts::thinToo,
                   truth, progress, clock),
@@ -204,7 +204,7 @@ struct PyramidCounts {
 PyramidCounts descendFrom(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
                           StageClock& clock) {
     const StageClock::Scope scope(clock, "analyse");
-    wavelets::AnalyseOptions options;
+    wavelets::AnalyseOptions options{.order = solid.order()};
     if (choice.lastVisited()) options.maxSteps = *choice.lastVisited();
     BSplineField field = SolidAccess::takeField(std::move(solid));
     PyramidCounts counts;
@@ -230,16 +230,18 @@ PyramidCounts walk(const wavelets::Pyramid& pyramid, const std::string& name, co
 PyramidCounts climb(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
                     StageClock& clock) {
     const std::string name = solid.input().path;
+    const StepOrder order = solid.order();
     const auto& pyramid = SolidAccess::of(solid).pyramid;
     const PyramidCounts counts = pyramid ? walk(*pyramid, name, choice, maker, progress, clock)
                                          : descendFrom(std::move(solid), choice, maker, progress, clock);
     if (maker.empty()) throw InputError(name, "has no surface; nothing to polygonize");
-    if (choice.first() > counts.steps) throw InputError(name, tooFarText(choice.first(), counts.steps));
+    if (choice.first() > counts.steps)
+        throw InputError(name, tooFarText(choice.first(), counts.steps, order));
     if (choice.lastKept() >= counts.steps)
         throw InputError(name,
                          fmt::format("the ladder ends at step {}, and no level is coarser than level {}, "
                                      "which a region of --fine keeps; give it a finer one",
-                                     counts.steps, choice.lastKept() / kStepsPerLevel));
+                                     counts.steps, order.levelUpTo(choice.lastKept())));
     if (choice.last() && *choice.last() > counts.steps)
         progress.say(fmt::format("{}: {} step {}", name,
                                  counts.coarsestControlPoints == kControlPointsOfOneNode
@@ -265,14 +267,16 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     StageClock clock(state.stages, state.seconds);
     const std::optional<lod::Border> border = state.openBorder;
     lod::checkBudgets(budgetOptions, border.has_value());
-    lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid), state.surface);
-    const lod::StepChoice choice(options, budgets.wanted());
-    lod::Maker maker(choice, budgets, options, border, lod::truthOf(solid), state.surface, visitor, progress,
-                     clock);
+    const StepOrder order = solid.order();
+    lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid), state.surface, order);
+    const lod::StepChoice choice(options, budgets.wanted(), order);
+    lod::Maker maker(choice, budgets, options, order, border, lod::truthOf(solid), state.surface, visitor,
+                     progress, clock);
     Ladder ladder;
     ladder.input = solid.input();
     ladder.fit = solid.fit();
     ladder.K = solid.K();
+    ladder.order = order;
     const lod::PyramidCounts counts = lod::climb(std::move(solid), choice, maker, progress, clock);
     ladder.levels = maker.takeLevels();
     if (budgets.wanted()) ladder.budgets = budgets.make(ladder.input.path, visitor, progress, clock);
@@ -295,10 +299,10 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
     const double begin = clock.secondsSoFar();
-    lod::LevelMesher mesher(options, state.openBorder, lod::LevelMesher::Facts::few, lod::truthOf(solid),
-                            progress, clock);
-    if (!options.fine.empty() && step % kStepsPerLevel != 0)
-        throw UsageError(fmt::format("--fine needs a level: step {} is not 3 L", step));
+    lod::LevelMesher mesher(options, state.order, state.openBorder, lod::LevelMesher::Facts::few,
+                            lod::truthOf(solid), progress, clock);
+    if (!options.fine.empty() && !state.order.levelOf(step))
+        throw UsageError(fmt::format("--fine needs a level: step {} is between two", step));
     for (const int before : mesher.stepsBefore(step))
         mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));
     const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
@@ -330,11 +334,11 @@ std::vector<LevelReport> describeLevels(const Pyramid& pyramid, const LevelOptio
                                         const Progress& progress) {
     StageClock clock;
     const auto input = lod::inputOfSource(PyramidAccess::of(pyramid).source);
-    lod::LevelMesher mesher(options, std::nullopt, lod::LevelMesher::Facts::few,
+    lod::LevelMesher mesher(options, pyramid.order(), std::nullopt, lod::LevelMesher::Facts::few,
                             input ? lod::InputTruth::of(*input) : lod::InputTruth{}, progress, clock);
     std::vector<LevelReport> reports;
     SolidCounts before;
-    for (int step = 0; step <= pyramid.stepCount(); step += kStepsPerLevel) {
+    for (int l = 0, step = 0; step <= pyramid.stepCount(); step = pyramid.order().stepOf(++l)) {
         const BSplineField field = PyramidAccess::of(pyramid).field(step, progress);
         lod::LevelMesh level = mesher.make(step, field);
         if (level.mesh.triangles.empty()) break;

@@ -98,9 +98,11 @@ struct LevelMesher::Level0 {
     std::unique_ptr<LevelHold> hold;
 };
 
-LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                         const InputTruth& truth, const Progress& progress, StageClock& clock)
+LevelMesher::LevelMesher(const LevelOptions& options, const StepOrder& order,
+                         const std::optional<Border>& openBorder, Facts facts, const InputTruth& truth,
+                         const Progress& progress, StageClock& clock)
     : options_(options),
+      order_(order),
       openBorder_(openBorder),
       wantsThin_(options.hold == Holding::shift ||
                  (options.hold == Holding::none && facts == Facts::thinToo)),
@@ -110,7 +112,7 @@ LevelMesher::LevelMesher(const LevelOptions& options, const std::optional<Border
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
     checkRegions(options);
-    if (!options.fine.empty()) regions_.emplace(options.fine, progress);
+    if (!options.fine.empty()) regions_.emplace(options.fine, order, progress);
 }
 
 LevelMesher::~LevelMesher() = default;
@@ -246,7 +248,7 @@ void LevelMesher::prepare(int step, const BSplineField& field) {
 }
 
 std::vector<int> LevelMesher::stepsBefore(int step) const {
-    std::vector<int> steps = stepsOf(options_.fine);
+    std::vector<int> steps = stepsOf(options_.fine, order_);
     std::erase_if(steps, [step](int s) { return s >= step; });
     if (needsLevel0() && step != 0 && (steps.empty() || steps.front() != 0)) steps.insert(steps.begin(), 0);
     return steps;
@@ -258,7 +260,7 @@ void LevelMesher::addRegions(LevelMesh& level) {
     if (report.step == 0 && !report.vanished()) regions_->requireWithin(boxAround(level.mesh));
     const double smallest = smallestAt(report.step, level.field);
     regions_->remember(report.step, level.field, report.refine, smallest, progress_);
-    if (report.step <= stepsOf(options_.fine).front()) return;
+    if (report.step <= stepsOf(options_.fine, order_).front()) return;
     progress_("blending", 0);
     auto blend = regions_->blended(report.step, level.field, report.refine, smallest, progress_);
     if (!blend) {
@@ -401,7 +403,7 @@ std::optional<SamplingReport> LevelMesher::sampling(const LevelMesh& level, cons
     if (step == 0 || openBorder_ || refine == kFinestRefine || level.report.regions || !isMore(finer, before))
         return std::nullopt;
     const StageClock::Scope scope(clock_, "sampling");
-    // A lattice point of level 0 and one of this level, refined so often, are equally dense.
+    // A lattice point of level 0 and one of this level, refined so often, are equally dense (in the mean of the axes).
     const int finest =
         std::min(kFinestRefine, options_.refine.value_or(1) << std::min(2, step / kStepsPerLevel));
     do {
@@ -425,7 +427,7 @@ void LevelMesher::tellWalls(LevelReport& report) const {
         const Thickness& t = thickness[i];
         WallThickness wall{shares[i], t.voxels, t.world, {}};
         const double widest = LevelHold::widestVoxelFor(t.voxels);
-        if (widest >= 1) wall.heldUpTo = static_cast<int>(std::floor(std::log2(widest)));
+        if (widest >= 1) wall.heldUpTo = order_.levelOfVoxel(widest);
         report.walls.push_back(wall);
         text += fmt::format("{} {:.3g} ({:.3g} voxels, {})", text.empty() ? "" : ",", wall.world, wall.voxels,
                             wall.heldUpTo ? fmt::format("kept up to level {}", *wall.heldUpTo)
@@ -505,7 +507,7 @@ bool LevelMesher::compacts(int refine) const { return options_.compact || (!opti
 
 // Cuts and fills take seconds a step, and those that only a budget may choose go without.
 bool LevelMesher::mustFall(int step) const {
-    const bool isLevel = step % kStepsPerLevel == 0 || options_.steps || facts_ == Facts::few;
+    const bool isLevel = order_.levelOf(step) || options_.steps || facts_ == Facts::few;
     return isLevel && facts_ != Facts::ofBudget;
 }
 
@@ -534,7 +536,7 @@ LevelMesher::Draft LevelMesher::draftedAt(Sampled sampled, int step, const BSpli
     LevelReport& report = level.report;
     level.field = field;
     report.step = step;
-    if (step % kStepsPerLevel == 0) report.level = step / kStepsPerLevel;
+    report.level = order_.levelOf(step);
     report.refine = sampled.refine;
     if (holds(step)) hold(level, sampled.closedGaps);
     std::optional<std::vector<double>> thin;

@@ -38,8 +38,8 @@ class LevelMesher {
     // which may have more parts, handles and cavities than the step before.
     enum class Facts { few, thinToo, ofBudget };
     // truth: its volume is what levels are measured against and keep with preserveVolume; without one it is level 0's. Throws UsageError for options that exclude each other.
-    LevelMesher(const LevelOptions& options, const std::optional<Border>& openBorder, Facts facts,
-                const InputTruth& truth, const Progress& progress, StageClock& clock);
+    LevelMesher(const LevelOptions& options, const StepOrder& order, const std::optional<Border>& openBorder,
+                Facts facts, const InputTruth& truth, const Progress& progress, StageClock& clock);
     ~LevelMesher();
 
     // Whether make() must have seen step 0 before any other.
@@ -110,6 +110,7 @@ class LevelMesher {
     void putFeatures(LevelMesh& level, const SpeckRemoval& removal) const;
 
     const LevelOptions options_;
+    const StepOrder order_;
     std::optional<Border> openBorder_;
     bool wantsThin_;
     Facts facts_;

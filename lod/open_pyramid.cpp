@@ -13,11 +13,15 @@ using Source = std::map<std::string, std::string>;
 Source read(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress,
             Solid::State& solid) {
     if (!compress::isPackedPath(path)) {
-        solid.pyramid = wavelets::readPyramid(path, options.finestStep);
+        const int finest =
+            options.finestLevel ? wavelets::readOrder(path).stepOf(*options.finestLevel) : options.finestStep;
+        solid.pyramid = wavelets::readPyramid(path, finest);
+        solid.order = solid.pyramid->order;
         return solid.pyramid->source;
     }
-    compress::PackedField packed = openPacked(path, options.maxMemory, progress);
+    PackedSolid packed = openPacked(path, options.maxMemory, progress);
     solid.field = std::move(packed.field);
+    solid.order = std::move(packed.order);
     return packed.source;
 }
 
@@ -52,6 +56,7 @@ Solid::State openPyramid(const std::filesystem::path& path, const SolidOptions& 
 
 Solid::State stateOf(wavelets::Pyramid pyramid, const std::string& name) {
     Solid::State solid;
+    solid.order = pyramid.order;
     solid.pyramid = std::move(pyramid);
     describe(solid, name, solid.pyramid->source);
     return solid;

@@ -14,21 +14,22 @@ namespace isowave {
 
 Pyramid Pyramid::open(const std::filesystem::path& path, int finestStep, const Progress& progress) {
     if (!compress::isPackedPath(path)) return PyramidAccess::make(wavelets::readPyramid(path, finestStep));
-    compress::PackedField packed = lod::openPacked(path, {}, progress);
-    wavelets::Pyramid pyramid = wavelets::analyse(packed.field, {}, progress);
+    lod::PackedSolid packed = lod::openPacked(path, {}, progress);
+    wavelets::Pyramid pyramid = wavelets::analyse(packed.field, {.order = packed.order}, progress);
     pyramid.source = std::move(packed.source);
     return PyramidAccess::make(std::move(pyramid));
 }
 
 void Pyramid::save(const std::filesystem::path& path) const {
     if (compress::isPackedPath(path))
-        lod::packExactly(state_->pyramid.field(0), state_->pyramid.source, path);
+        lod::packExactly(state_->pyramid.field(0), state_->pyramid, path);
     else
         wavelets::writePyramid(path, state_->pyramid);
 }
 
 double Pyramid::K() const { return state_->pyramid.K; }
 int Pyramid::stepCount() const { return state_->pyramid.stepCount(); }
+const StepOrder& Pyramid::order() const { return state_->pyramid.order; }
 
 Field Pyramid::field(int step, const Progress& progress) const {
     return FieldAccess::make(state_->pyramid.field(step, progress));
@@ -45,7 +46,9 @@ Pyramid analyse(Solid solid, const Progress& progress) {
     const InputReport& input = solid.input();
     auto source = input.kind == InputReport::Kind::pyramid ? input.source
                                                            : lod::sourceOf(input, solid.fit());  // packed
-    wavelets::Pyramid pyramid = wavelets::analyse(SolidAccess::takeField(std::move(solid)), {}, progress);
+    const StepOrder order = solid.order();
+    wavelets::Pyramid pyramid =
+        wavelets::analyse(SolidAccess::takeField(std::move(solid)), {.order = order}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));
 }

@@ -24,6 +24,7 @@ struct StepMesh {
     TriangleMesh mesh;  // closed, oriented, 2-manifold
     MeshTopology topology;
     double voxel = 0;  // the diagonal of one, world units
+    bool isLevel = true;
 };
 
 struct TopologyLimits {

@@ -16,6 +16,7 @@
 #include "lod/open_level_set.h"
 #include "lod/open_mesh.h"
 #include "lod/open_pyramid.h"
+#include "lod/steps.h"
 #include "wavelets/pyramid_file.h"
 
 namespace isowave {
@@ -59,6 +60,7 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
         {"--time", o.image.time.has_value(), true, false, false},
         {"--resample-slices", o.image.resampleSlices, true, false, false},
         {"--grid", o.grid.has_value(), false, false, true},
+        {"--axes", o.axes.has_value(), true, true, true},
     };
     const char* what = kind == InputKind::image  ? "an image"
                        : kind == InputKind::mesh ? "a mesh"
@@ -82,10 +84,15 @@ bool hasExtension(const fs::path& path, std::string_view extension) {
 
 // Checks the options, opens, and keeps the time that it took.
 template <class Open>
-Solid opened(const std::string& name, InputKind kind, const SolidOptions& options, const Open& open) {
+Solid opened(const std::string& name, InputKind kind, const SolidOptions& options, const Progress& progress,
+             const Open& open) {
     refuseForeignOptions(name, kind, options);
     StageClock clock;
     Solid::State state = open(clock);
+    if (kind != InputKind::pyramid) {
+        const openvdb::Vec3d voxel = state.field->transform().voxelSize();
+        state.order = orderFor({voxel.x(), voxel.y(), voxel.z()}, options, name, progress);
+    }
     state.stages = clock.stages();
     state.seconds = clock.secondsSoFar();
     return SolidAccess::make(std::move(state));
@@ -125,12 +132,13 @@ Space Solid::space() const { return state_->space; }
 const InputReport& Solid::input() const { return state_->input; }
 const std::optional<FitSummary>& Solid::fit() const { return state_->fit; }
 bool Solid::isPyramid() const { return state_->pyramid.has_value(); }
+const StepOrder& Solid::order() const { return state_->order; }
 const std::vector<StageSeconds>& Solid::seconds() const { return state_->stages; }
 
 Solid open(const fs::path& path, const SolidOptions& options, const Progress& progress) {
     lod::checkFitOptions(options);
     const lod::InputKind kind = lod::kindOf(path, options);
-    return lod::opened(path.string(), kind, options, [&](StageClock& clock) {
+    return lod::opened(path.string(), kind, options, progress, [&](StageClock& clock) {
         switch (kind) {
             case lod::InputKind::image:
                 return lod::openImage(path, options, progress, clock);
@@ -147,26 +155,26 @@ Solid open(const fs::path& path, const SolidOptions& options, const Progress& pr
 
 Solid open(const TriangleMesh& mesh, const SolidOptions& options, const Progress& progress, Space space) {
     lod::checkFitOptions(options);
-    return lod::opened("mesh", lod::InputKind::mesh, options, [&](StageClock& clock) {
+    return lod::opened("mesh", lod::InputKind::mesh, options, progress, [&](StageClock& clock) {
         return lod::openMesh(mesh, space, options, progress, clock);
     });
 }
 
 Solid open(const Image& image, const SolidOptions& options, const Progress& progress) {
     lod::checkFitOptions(options);
-    return lod::opened("image", lod::InputKind::image, options,
+    return lod::opened("image", lod::InputKind::image, options, progress,
                        [&](StageClock& clock) { return lod::openImage(image, options, progress, clock); });
 }
 
 Solid open(const VoxelView& voxels, const SolidOptions& options, const Progress& progress) {
     lod::checkFitOptions(options);
-    return lod::opened(imageio::kViewName, lod::InputKind::image, options,
+    return lod::opened(imageio::kViewName, lod::InputKind::image, options, progress,
                        [&](StageClock& clock) { return lod::openImage(voxels, options, progress, clock); });
 }
 
 Solid open(const openvdb::FloatGrid& levelSet, const SolidOptions& options, const Progress& progress) {
     lod::checkFitOptions(options);
-    return lod::opened("level set", lod::InputKind::vdb, options, [&](StageClock& clock) {
+    return lod::opened("level set", lod::InputKind::vdb, options, progress, [&](StageClock& clock) {
         return lod::openLevelSet(levelSet.deepCopy(), "level set", options, progress, clock);
     });
 }

@@ -24,6 +24,7 @@ struct Solid::State {
     // One of the two.
     std::optional<BSplineField> field;
     std::optional<wavelets::Pyramid> pyramid;
+    StepOrder order;  // of its steps, made or to be made
     Space space = Space::unspecified;
     std::optional<lod::Border> openBorder;
     InputReport input;

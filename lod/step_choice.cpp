@@ -18,7 +18,7 @@ void requireSteps(const char* option, const std::optional<StepRange>& range) {
 
 void checkRanges(const LevelOptions& options) {
     if (options.levels && options.steps)
-        throw UsageError("--levels and --steps exclude each other; level L is step 3L");
+        throw UsageError("--levels and --steps exclude each other; give one of them");
     requireSteps("--levels", options.levels);
     requireSteps("--steps", options.steps);
     lod::checkRegions(options);
@@ -26,15 +26,17 @@ void checkRanges(const LevelOptions& options) {
 
 namespace lod {
 
-StepChoice::StepChoice(const LevelOptions& options, bool budgets)
+StepChoice::StepChoice(const LevelOptions& options, bool budgets, const StepOrder& order)
     : levels_(!budgets || options.levels || options.steps),
       all_(budgets),
-      stride_(options.steps ? 1 : kStepsPerLevel) {
+      steps_(options.steps.has_value()),
+      order_(order) {
     checkRanges(options);
     const StepRange range = options.steps ? *options.steps : options.levels.value_or(StepRange{});
-    first_ = range.first * stride_;
-    if (range.last) last_ = *range.last * stride_;
-    kept_ = stepsOf(options.fine);
+    const auto stepOf = [&](int number) { return steps_ ? number : order.stepOf(number); };
+    first_ = stepOf(range.first);
+    if (range.last) last_ = stepOf(*range.last);
+    kept_ = stepsOf(options.fine, order);
 }
 
 }  // namespace lod

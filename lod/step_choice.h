@@ -12,11 +12,11 @@ namespace isowave::lod {
 class StepChoice {
   public:
     // budgets: every step is looked at, but levels are asked for only where the options say so. Throws UsageError.
-    StepChoice(const LevelOptions& options, bool budgets);
+    StepChoice(const LevelOptions& options, bool budgets, const StepOrder& order);
 
     // Whether the step's level is asked for.
     bool has(int step) const {
-        return levels_ && step >= first_ && (!last_ || step <= *last_) && step % stride_ == 0;
+        return levels_ && step >= first_ && (!last_ || step <= *last_) && (steps_ || order_.levelOf(step));
     }
     // Whether the step is looked at, be it asked for or not.
     bool visits(int step) const { return all_ || step == 0 || has(step) || isKept(step); }
@@ -30,7 +30,8 @@ class StepChoice {
 
   private:
     bool levels_, all_;
-    int stride_;
+    bool steps_;  // every step is asked for, not levels alone
+    StepOrder order_;
     int first_ = 0;
     std::optional<int> last_;
     std::vector<int> kept_;

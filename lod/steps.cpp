@@ -1,6 +1,10 @@
 #include "lod/steps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
 
 #include "isowave/error.h"
 
@@ -23,16 +27,43 @@ std::array<std::int64_t, 3> domainOf(const Shape& shape) {
     return {nodes.x(), nodes.y(), nodes.z()};
 }
 
+// "x and y"; "xy, xy, x" where levels differ.
+std::string firstAxesText(const StepOrder& order) {
+    const std::vector<std::string>& levels = order.first;
+    if (std::adjacent_find(levels.begin(), levels.end(), std::not_equal_to<>()) != levels.end())
+        return fmt::format("{}", fmt::join(levels, ", "));
+    std::string text;
+    for (const char axis : levels.front()) text += (text.empty() ? "" : " and ") + std::string(1, axis);
+    return text;
+}
+
 }  // namespace
 
-std::string tooFarText(int step, int count) {
-    return fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", count, count / kStepsPerLevel,
+StepOrder orderFor(const std::array<double, 3>& spacing, const SolidOptions& options, const std::string& name,
+                   const Progress& progress) {
+    if (options.axes == StepAxes::xyz) return {};
+    const StepOrder order =
+        options.axes == StepAxes::cubes ? StepOrder::forVoxels(spacing, 1) : StepOrder::forVoxels(spacing);
+    if (!order.first.empty())
+        progress.say(fmt::format(
+            "{}: voxels are {:.4g} x {:.4g} x {:.4g}: the first {} {} only, later ones x, y and z (--axes "
+            "xyz: "
+            "all of them)",
+            name, spacing[0], spacing[1], spacing[2],
+            order.first.size() == 1 ? "level halves" : fmt::format("{} levels halve", order.first.size()),
+            firstAxesText(order)));
+    return order;
+}
+
+std::string tooFarText(int step, int count, const StepOrder& order) {
+    return fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", count, order.levelUpTo(count),
                        step);
 }
 
 BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::string& name,
                      const Progress& progress) {
-    if (step < 0 || step > pyramid.stepCount()) throw InputError(name, tooFarText(step, pyramid.stepCount()));
+    if (step < 0 || step > pyramid.stepCount())
+        throw InputError(name, tooFarText(step, pyramid.stepCount(), pyramid.order));
     for (int s = step; s < pyramid.stepCount(); ++s)
         if (!pyramid.steps[static_cast<std::size_t>(s)].details)
             throw UsageError(
@@ -51,9 +82,10 @@ BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageC
     }
     if (step == 0) return SolidAccess::takeField(std::move(solid));
     const StageClock::Scope scope(clock, "analyse");
-    const wavelets::Descent descent =
-        wavelets::descend(SolidAccess::takeField(std::move(solid)), {.maxSteps = step}, progress);
-    if (step > descent.steps) throw InputError(name, tooFarText(step, descent.steps));
+    const StepOrder order = solid.order();
+    const wavelets::Descent descent = wavelets::descend(SolidAccess::takeField(std::move(solid)),
+                                                        {.order = order, .maxSteps = step}, progress);
+    if (step > descent.steps) throw InputError(name, tooFarText(step, descent.steps, order));
     return descent.coarsest;
 }
 
@@ -66,6 +98,7 @@ std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid) {
         const Shape::Ptr shape = last ? pyramid.coarsest.shape : pyramid.steps[step].shape;
         StepFacts& f = facts[step];
         f.step = step;
+        f.level = pyramid.order.levelOf(step);
         if (step > 0) f.halvedAxis = pyramid.steps[step - 1].axis;
         if (!last) spacing[pyramid.steps[step].axis] /= 2;
         f.spacing = {spacing.x(), spacing.y(), spacing.z()};

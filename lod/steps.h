@@ -1,6 +1,7 @@
 // Steps of a solid, wherever they come from: taken off a pyramid that was read, or by analysing a field.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,12 @@ BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::stri
 // The field of a step. Throws InputError when the solid does not go so far.
 BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock);
 
+// The order of steps for voxels of this size, and a remark where that is not x, y, z in turn.
+StepOrder orderFor(const std::array<double, 3>& spacing, const SolidOptions& options, const std::string& name,
+                   const Progress& progress);
+
 // "has steps 0 to 12 (levels 0 to 4), not step 15"
-std::string tooFarText(int step, int count);
+std::string tooFarText(int step, int count, const StepOrder& order);
 
 // Finest first, one for each step and one for the coarsest field.
 std::vector<StepFacts> factsOf(const wavelets::Pyramid& pyramid);

@@ -1,6 +1,8 @@
 // A field on a lattice twice as fine: the same function with more control points.
 #pragma once
 
+#include <array>
+
 #include "isowave/progress.h"
 #include "volume/field.h"
 
@@ -13,6 +15,13 @@ namespace isowave {
 // I becomes the control points that depend on one in I (or are no longer constant); K stays. Signs of the
 // shape are those of F at the fine lattice points, there being no input between the coarse ones.
 BSplineField insertKnots(const BSplineField& field, const Progress& progress = {});
+
+// The same on some of the axes.
+using AxisChoice = std::array<bool, 3>;
+BSplineField insertKnots(const BSplineField& field, const AxisChoice& axes, const Progress& progress = {});
+
+// And again, `times` on each axis: onto a lattice 2^times as fine. No times: the field itself.
+BSplineField insertKnots(BSplineField field, std::array<int, 3> times, const Progress& progress = {});
 
 // The shape of a field that has none yet: known where control points are active, inside where F < 0 at the lattice point.
 Shape::Ptr shapeOf(const openvdb::FloatGrid& controlPoints, const Progress& progress = {});

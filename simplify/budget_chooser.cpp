@@ -53,8 +53,7 @@ BudgetChooser::BudgetChooser(std::vector<StepMesh> steps, const TopologyLimits& 
     const auto pieces = [](const StepMesh& s) { return s.topology.components + s.topology.genus; };
     std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
     for (const StepMesh* step : allowed_) {
-        if (step != allowed_.front() && (step->step % kStepsPerLevel != 0 || pieces(*step) >= fewest))
-            continue;
+        if (step != allowed_.front() && (!step->isLevel || pieces(*step) >= fewest)) continue;
         fewest = pieces(*step);
         chains_.emplace_back(*step, original_, steps_.front().voxel);
     }

@@ -11,8 +11,8 @@ constexpr std::int64_t kOneNode = 4 * 4 * 4;  // control points of a single node
 
 // Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so
 // fields end at 64 control points; on the way the number of control points may stay for many steps while the
-// domain moves on. A domain that straddles the origin stays at -2 .. 2 instead: then three directions in a
-// row change nothing.
+// domain moves on. A domain that straddles the origin stays at -2 .. 2 instead: then none of the three directions
+// changes anything.
 struct Extent {
     std::int64_t controlPoints;
     openvdb::CoordBBox box;
@@ -31,17 +31,18 @@ BSplineField halveAll(BSplineField current, const AnalyseOptions& options, const
     Extent extent(current);
     const double whole = static_cast<double>(std::max<std::int64_t>(1, extent.controlPoints));
     double worked = 0;
-    int step = 0, unchanged = 0;
+    constexpr int kNone = 0, kAll = 1 << 0 | 1 << 1 | 1 << 2;
+    int step = 0, unchanged = kNone;  // a bit for each axis that changed nothing since something last changed
     if (onStep) onStep(0, current);
-    while (extent.controlPoints > kOneNode && step < options.maxSteps && unchanged < 3) {
+    while (extent.controlPoints > kOneNode && step < options.maxSteps && unchanged != kAll) {
         progress("analysing", std::min(1.0, worked / (3 * whole)));
-        const int axis = step++ % 3;
+        const int axis = options.order.axisAfter(step++);
         DirectionResult result = analyseDirection(current, axis, progress);
         onDirection(axis, std::move(current.shape), std::move(result.details));
         current = std::move(result.coarse);
         worked += static_cast<double>(extent.controlPoints);
         const Extent now(current);
-        unchanged = now == extent ? unchanged + 1 : 0;
+        unchanged = now == extent ? unchanged | 1 << axis : kNone;
         extent = now;
         if (onStep) onStep(step, current);
     }
@@ -59,6 +60,7 @@ Pyramid analyse(const BSplineField& field, const AnalyseOptions& options, const 
                 const std::function<void(int, const BSplineField&)>& onStep) {
     Pyramid pyramid;
     pyramid.K = field.K;
+    pyramid.order = options.order;
     pyramid.coarsest =
         halveAll(field, options, progress, onStep, [&](int axis, Shape::Ptr shape, DetailGrid::Ptr details) {
             pyramid.steps.push_back({axis, std::move(shape), std::move(details)});

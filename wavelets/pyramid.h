@@ -1,7 +1,7 @@
 // The pyramid: a field decomposed, step by step, down to one node. The field of every step can be restored.
 //
-// step s is the field after s directions have been halved (axes cycle x, y, z); step 0 is the field itself.
-// level l is step 3l.
+// step s is the field after s directions have been halved; step 0 is the field itself. The order (isowave/solid.h: StepOrder)
+// says which axis each step halves and which steps are levels: x, y, z in turn and level l at step 3 l, unless voxels are no cubes.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "isowave/progress.h"
+#include "isowave/solid.h"
 #include "wavelets/direction.h"
 
 namespace isowave::wavelets {
@@ -27,6 +28,7 @@ struct Pyramid {
     BSplineField coarsest;    // the field of step steps.size()
     std::vector<Step> steps;  // finest first
     double K = 1.0;
+    StepOrder order = {};  // steps[s].axis is order.axisAfter(s); of files from elsewhere any
     // Of step 0, where synthesis misses them by rounding (wavelets/exact.h); null: nothing is known of that.
     openvdb::FloatGrid::Ptr exact = {};
     // Where the solid came from: "input.path", "input.kind", "fit", ... Written into the file; free text.
@@ -41,6 +43,7 @@ struct Pyramid {
 };
 
 struct AnalyseOptions {
+    StepOrder order = {};
     int maxSteps = 1 << 20;  // stop after so many steps, or when one node (4^3 control points) is left
 };
 

@@ -8,6 +8,7 @@
 
 #include "isowave/error.h"
 #include "volume/vdb_file.h"
+#include "wavelets/step_order.h"
 
 namespace isowave::wavelets {
 namespace {
@@ -16,6 +17,7 @@ constexpr const char* kFormat = "isowave:format";
 constexpr const char* kVersion = "isowave:version";
 constexpr const char* kK = "isowave:K";
 constexpr const char* kAxes = "isowave:axes";
+constexpr const char* kFirstLevels = "isowave:first_levels";
 const std::string kSource = "isowave:source:";
 constexpr const char* kPyramid = "pyramid";
 constexpr const char* kControlPoints = "control_points";
@@ -94,6 +96,8 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
     std::string axes;
     for (const Step& step : pyramid.steps) axes += "xyz"[step.axis];
     meta.insertMeta(kAxes, openvdb::StringMetadata(axes));
+    if (!pyramid.order.first.empty())
+        meta.insertMeta(kFirstLevels, openvdb::StringMetadata(textOf(pyramid.order)));
     for (const auto& [key, value] : pyramid.source)
         meta.insertMeta(kSource + key, openvdb::StringMetadata(value));
 
@@ -110,6 +114,23 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
 
 namespace {
 
+// A file without it has levels of all three axes, in whatever order.
+void readOrder(const std::string& file, const openvdb::MetaMap& metadata, Pyramid& pyramid) {
+    if (!metadata[kFirstLevels]) return;
+    const auto text = metaValue<std::string>(file, metadata, kFirstLevels);
+    const std::optional<StepOrder> order = orderOf(text);
+    if (!order)
+        throw InputError(file, fmt::format("the first levels are '{}', expected axes such as 'xy xy'", text));
+    for (int step = 0; step < pyramid.stepCount(); ++step)
+        if (const int axis = pyramid.steps[static_cast<std::size_t>(step)].axis;
+            axis != order->axisAfter(step))
+            throw InputError(file,
+                             fmt::format("step {} halves {}, and {} by the first levels '{}'; the file is "
+                                         "damaged",
+                                         step + 1, "xyz"[axis], "xyz"[order->axisAfter(step)], text));
+    pyramid.order = *order;
+}
+
 // Everything but the grids. Steps have their axis only.
 Pyramid readHead(const std::string& file, const openvdb::MetaMap& metadata) {
     checkFormat(file, metadata);
@@ -123,6 +144,7 @@ Pyramid readHead(const std::string& file, const openvdb::MetaMap& metadata) {
                 file, fmt::format("axis '{}' of step {}, expected x, y or z", axis, pyramid.stepCount()));
         pyramid.steps.push_back({axis - 'x', nullptr, nullptr});
     }
+    readOrder(file, metadata, pyramid);
     for (auto meta = metadata.beginMeta(); meta != metadata.endMeta(); ++meta)
         if (meta->first.starts_with(kSource))
             pyramid.source[meta->first.substr(kSource.size())] = meta->second->str();
@@ -130,6 +152,10 @@ Pyramid readHead(const std::string& file, const openvdb::MetaMap& metadata) {
 }
 
 }  // namespace
+
+StepOrder readOrder(const std::filesystem::path& path) {
+    return readHead(path.string(), VdbParts(path).metadata()).order;
+}
 
 Pyramid readPyramid(const std::filesystem::path& path, int finestStep, std::int64_t* bytesRead) {
     const std::string file = path.string();

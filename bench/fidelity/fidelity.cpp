@@ -267,7 +267,7 @@ class Bench {
                     refinedAndThinned(field, iso, stepSeconds_.back() + choosing.seconds()));
             }
             steps_.push_back({step, std::move(level.mesh), std::move(level.report.topology),
-                              field.transform().voxelSize().length()});
+                              field.transform().voxelSize().length(), step % kStepsPerLevel == 0});
             others += counting.seconds();
         });
     }

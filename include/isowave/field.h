@@ -1,6 +1,6 @@
 // The function whose zero set is a surface: a uniform cubic tensor-product B-spline, negative inside.
 //
-//   Field field = fieldOf(open("part.stl"), 3);     // step 3 = level 1
+//   Field field = fieldOf(open("part.stl"), 3);     // step 3 = level 1 of cubic voxels
 //   double f = field.value({12.5, 3, 7});           // near the surface: about K / halfWidth a voxel
 //   TriangleMesh mesh = field.polygonize();
 #pragma once
@@ -52,7 +52,7 @@ class ISOWAVE_EXPORT Field {
     std::shared_ptr<const State> state_;
 };
 
-// The field of a step of a solid (level l is step 3 l). Throws InputError where the solid does not go so far.
+// The field of a step of a solid (level l is step Solid::order().stepOf(l)). Throws InputError where the solid does not go so far.
 ISOWAVE_EXPORT Field fieldOf(Solid solid, int step = 0, const Progress& progress = {});
 
 }  // namespace isowave

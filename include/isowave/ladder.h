@@ -9,7 +9,8 @@
 //
 //   makeLadder(open("part.stl"), {}, {.level = [](const LevelReport& report, const TriangleMesh& mesh) { ... }});
 //
-// Step s is the solid after s directions have been halved (axes in turn x, y, z); level l is step 3 l.
+// Step s is the solid after s directions have been halved, of cubic voxels axes in turn x, y, z; level l is step 3 l then, in general
+// Solid::order().stepOf(l).
 //
 //   each step:  field -> hold what is thin -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
 //               -> count -> measure against level 0
@@ -181,7 +182,7 @@ struct InputDistance {
 
 struct LevelReport {
     int step = 0;
-    std::optional<int> level;         // where step is 3 level
+    std::optional<int> level;         // nothing between two levels
     std::array<double, 3> spacing{};  // of the step's lattice, world units
     std::int64_t controlPoints = 0, nodes = 0;
     double leafOccupancy = 0;      // share of the stored lattice points that are control points, 0 to 1
@@ -223,8 +224,9 @@ struct BudgetReport {
     std::optional<double> ratioAsked, toleranceAsked;
     std::optional<std::int64_t> maxGenus;
     std::optional<double> minComponent;
-    int step = 0;     // that the mesh was made of
-    std::string why;  // "smallest distance to level 0 of the steps tried: 0 (1.2), 6 (0.8)"
+    int step = 0;              // that the mesh was made of
+    std::optional<int> level;  // which that is; nothing between two levels
+    std::string why;           // "smallest distance to level 0 of the steps tried: 0 (1.2), 6 (0.8)"
     MeshTopology topology;
     std::int64_t selfIntersections = 0;  // pairs of triangles
     OneSidedDistance toLevel0, fromLevel0;
@@ -247,6 +249,7 @@ struct Ladder {
     InputReport input;
     std::optional<FitSummary> fit;
     double K = 1;
+    StepOrder order;
     std::vector<Level> levels;  // finest first
     std::vector<BudgetLevel>
         budgets;    // triangles, ratios, tolerances, each in the order in which they were asked for

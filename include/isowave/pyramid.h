@@ -4,7 +4,8 @@
 //   pyramid.save("part.pyramid.vdb");
 //   for (const StepFacts& step : pyramid.steps()) std::cout << step.step << ' ' << step.controlPoints << '\n';
 //
-// Step s is the solid after s directions have been halved (axes in turn x, y, z); level l is step 3 l.
+// Step s is the solid after s directions have been halved, of cubic voxels axes in turn x, y, z; level l is step 3 l then, in general
+// StepOrder::stepOf(l).
 #pragma once
 
 #include <array>
@@ -24,10 +25,11 @@
 
 namespace isowave {
 
-inline constexpr int kStepsPerLevel = 3;
+inline constexpr int kStepsPerLevel = 3;  // of a level that halves all axes
 
 struct StepFacts {
     int step = 0;
+    std::optional<int> level;              // nothing between two levels
     std::optional<int> halvedAxis;         // 0, 1, 2: what made it of the step before; nothing for step 0
     std::array<double, 3> spacing{};       // world units
     std::array<std::int64_t, 3> domain{};  // nodes along each axis of the box around the control points
@@ -54,6 +56,7 @@ class ISOWAVE_EXPORT Pyramid {
 
     double K() const;
     int stepCount() const;
+    const StepOrder& order() const;
     // REQUIRES: 0 <= step <= stepCount().
     Field field(int step, const Progress& progress = {}) const;
 

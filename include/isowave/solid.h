@@ -32,6 +32,36 @@ namespace isowave {
 // as Esteve, Brunet and Vinacua have it.
 enum class FitMethod { binary, distance, mask };
 
+// Which axis each step of a solid's pyramid halves, and which steps are levels. A step halves one axis of the lattice. Each of the first
+// levels halves the axes that `first` names, an axis a step; every later level halves x, y and z. So of voxels that are cubes
+// level l is step 3 l, and with first = {"xy", "xy"} levels are the steps 0, 2, 4, 7, 10, ...
+struct ISOWAVE_EXPORT StepOrder {
+    std::vector<std::string> first = {};  // not empty, of the letters x, y, z
+
+    // For voxels of which an edge is `factor` times as long as another, or more, >= 1: levels halve the short axes alone, the shortest
+    // first, as long as that is so and a halving brings voxels nearer to a cube. By 2, (0.5, 0.5, 2.5) -> "xy", "xy"; (1, 1, 1.9) ->
+    // none.
+    static StepOrder forVoxels(const std::array<double, 3>& spacing, double factor = 2);
+
+    // 0, 1, 2: the axis whose halving leads from this step to the next one.
+    int axisAfter(int step) const;
+    int stepOf(int level) const;
+    // Nothing for a step between two levels.
+    std::optional<int> levelOf(int step) const;
+    // The coarsest level that is not coarser than the step.
+    int levelUpTo(int step) const;
+    // How often each axis has been halved: a voxel of the step is 2^n times as long.
+    std::array<int, 3> halvings(int step) const;
+    // The coarsest level whose voxel is on no axis longer than so many voxels of level 0, >= 1.
+    int levelOfVoxel(double longest) const;
+
+    friend bool operator==(const StepOrder&, const StepOrder&) = default;
+};
+
+// What --axes says: levels that make voxels cubes first where edges differ by a factor of 2 (StepOrder::forVoxels); wherever that brings
+// them nearer to a cube (by a factor of 1); or x, y, z from the start.
+enum class StepAxes { automatic, cubes, xyz };
+
 // Names in messages are those of the command's options.
 struct SolidOptions {
     // ---- what is inside
@@ -58,6 +88,10 @@ struct SolidOptions {
     ImageReadOptions image = {};           // its memoryLimit is set from maxMemory
     std::optional<std::string> grid = {};  // of a .vdb with several level sets
     int finestStep = 0;  // of a pyramid's file only what this step and coarser ones need is read
+    std::optional<int> finestLevel = {};  // the same, by level; instead of finestStep
+
+    // ---- its levels; a pyramid has its own
+    std::optional<StepAxes> axes = {};  // default: automatic
 
     // ---- the fit
     std::optional<FitMethod> fit = {};     // default: mask for masks and labels, distance else
@@ -144,6 +178,8 @@ class ISOWAVE_EXPORT Solid {
     // Nothing for a pyramid that does not say.
     const std::optional<FitSummary>& fit() const;
     bool isPyramid() const;
+    // What its steps halve, and which of them are levels.
+    const StepOrder& order() const;
     // How long opening took, by stage.
     const std::vector<StageSeconds>& seconds() const;
 

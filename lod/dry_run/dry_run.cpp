@@ -14,6 +14,7 @@
 #include "lod/open_level_set.h"
 #include "lod/open_mesh.h"
 #include "lod/solid.h"
+#include "lod/steps.h"
 #include "volume/distance_mesh.h"
 #include "volume/vdb_file.h"
 
@@ -23,12 +24,17 @@ namespace {
 constexpr double kBytesOfProgram = 60e6;  // lod/memory.h
 const std::vector<double> kShares{0.01, 0.05, 0.5};
 
-// Control points along an axis, c -> (c + 3)/2 from level to level, until the 4 of one node are left on all axes.
-int lastLevelOf(const std::array<std::int64_t, 3>& voxels, double band) {
-    double points = static_cast<double>(*std::max_element(voxels.begin(), voxels.end())) + 2 * band + 1;
-    int level = 0;
-    for (; points > 4; ++level) points = (points + 3) / 2;
-    return level;
+// Control points along an axis, c -> (c + 3)/2 from one halving to the next, until the 4 of one node are left on all axes.
+int lastLevelOf(const std::array<std::int64_t, 3>& voxels, double band, const StepOrder& order) {
+    std::array<double, 3> points{};
+    for (std::size_t a = 0; a < 3; ++a) points[a] = static_cast<double>(voxels[a]) + 2 * band + 1;
+    int step = 0;
+    for (; *std::max_element(points.begin(), points.end()) > 4; ++step) {
+        double& along = points[static_cast<std::size_t>(order.axisAfter(step))];
+        along = std::max(4.0, (along + 3) / 2);
+    }
+    const int level = order.levelUpTo(step);
+    return order.stepOf(level) < step ? level + 1 : level;
 }
 
 // thickness: of kShares, in voxels; empty: nothing is known.
@@ -36,7 +42,7 @@ void putWalls(DryRun& run, const std::vector<double>& thickness) {
     for (std::size_t i = 0; i < thickness.size(); ++i) {
         DryRun::Wall wall{kShares[i], thickness[i], {}};
         const double widest = LevelHold::widestVoxelFor(thickness[i]);
-        if (widest >= 1) wall.heldUpTo = static_cast<int>(std::floor(std::log2(widest)));
+        if (widest >= 1) wall.heldUpTo = run.order.levelOfVoxel(widest);
         run.walls.push_back(wall);
     }
 }
@@ -55,7 +61,7 @@ DryRun ofMesh(const std::filesystem::path& path, const SolidOptions& options, co
     run.voxels = *plan.input.dimensions;
     run.spacing = *plan.input.spacing;
     run.memoryBytes = kBytesOfProgram + kBytesPerBandPoint * plan.bandPoints;
-    run.lastLevel = lastLevelOf(run.voxels, fittingOf(options, run.fit).distance.band);
+    run.lastLevel = lastLevelOf(run.voxels, fittingOf(options, run.fit).distance.band, run.order);
     std::vector<double> walls;
     if (options.thicken)
         walls.assign(kShares.size(), *options.thicken);
@@ -90,6 +96,7 @@ DryRun ofImage(const std::filesystem::path& path, const SolidOptions& options, c
     DryRun run = begun(plan.kind, options, plan.fit);
     run.voxels = plan.stream.header().size;
     run.spacing = plan.stream.header().spacing();
+    run.order = orderFor(run.spacing, options, path.string(), progress);
     const VoxelFacts facts = factsOf(insideOf(plan.stream, plan.shape, progress), kShares, progress);
     const Fitting fitting = fittingOf(options, plan.fit);
     const double band = static_cast<double>(facts.faces) * 2 / 3 * 2 * fitting.distance.halfWidth;
@@ -98,13 +105,13 @@ DryRun ofImage(const std::filesystem::path& path, const SolidOptions& options, c
         (run.fit == FitMethod::distance ? kBytesPerBandPoint * band : kBytesPerNode * double(facts.cells));
     std::array<std::int64_t, 3> box{};
     for (int a = 0; a < 3; ++a) box[a] = std::max<std::int64_t>(1, facts.high[a] - facts.low[a] + 1);
-    run.lastLevel = lastLevelOf(box, fitting.distance.band);
+    run.lastLevel = lastLevelOf(box, fitting.distance.band, run.order);
     run.wallsAreBounds = true;
     putWalls(run, facts.walls);
     return run;
 }
 
-DryRun ofLevelSet(const std::filesystem::path& path, const SolidOptions& options) {
+DryRun ofLevelSet(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress) {
     const openvdb::FloatGrid::Ptr grid = readLevelSet(path, options.grid);
     DryRun run = begun(InputReport::Kind::levelSet, options, FitMethod::distance);
     const auto box = grid->evalActiveVoxelBoundingBox();
@@ -113,7 +120,8 @@ DryRun ofLevelSet(const std::filesystem::path& path, const SolidOptions& options
     run.voxels = {dim.x(), dim.y(), dim.z()};
     run.spacing = {spacing.x(), spacing.y(), spacing.z()};
     run.memoryBytes = kBytesOfProgram + kBytesPerBandPoint * static_cast<double>(grid->activeVoxelCount());
-    run.lastLevel = lastLevelOf(run.voxels, 0);  // the active voxels are the band
+    run.order = orderFor(run.spacing, options, path.string(), progress);
+    run.lastLevel = lastLevelOf(run.voxels, 0, run.order);  // the active voxels are the band
     return run;
 }
 
@@ -127,7 +135,7 @@ DryRun dryRun(const std::filesystem::path& path, const SolidOptions& options, co
         case InputKind::image:
             return ofImage(path, options, progress);
         case InputKind::vdb:
-            return ofLevelSet(path, options);
+            return ofLevelSet(path, options, progress);
         case InputKind::pyramid:
             break;
     }

@@ -16,6 +16,7 @@ struct DryRun {
     std::array<std::int64_t, 3>
         voxels{};                     // of the solid's box (of the image, of the level set's active voxels)
     std::array<double, 3> spacing{};  // of a voxel, world units
+    StepOrder order;                  // of its levels
     // About, at the peak of the fit: what lod/memory.h reckons with. A whole ladder was seen to take 1.1 to 2.0 times that
     // (a torus at 64 and 128 voxels, a gearwheel at 96).
     double memoryBytes = 0;

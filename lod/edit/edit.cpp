@@ -113,7 +113,12 @@ MeshTopology measured(const BSplineField& field, const Progress& progress) {
 class Editor {
   public:
     Editor(const wavelets::Pyramid& pyramid, const EditingOptions& options, const Progress& progress)
-        : options_(options), progress_(progress), pyramid_(&pyramid), field_(pyramid.field(0, progress)) {
+        : options_(options),
+          order_(pyramid.order),
+          step_(order_.stepOf(options.level)),
+          progress_(progress),
+          pyramid_(&pyramid),
+          field_(pyramid.field(0, progress)) {
         const std::optional<FitSummary> fit = fitOfSource(pyramid.source);
         perK_ = voxelsPerKOf(fit, field_, "the pyramid", progress);
         const DistanceFitOptions usual;
@@ -143,7 +148,7 @@ class Editor {
 
     wavelets::Pyramid pyramid() const {
         if (whole_) return *whole_;
-        wavelets::Pyramid result = wavelets::analyse(field_, {}, progress_);
+        wavelets::Pyramid result = wavelets::analyse(field_, {.order = order_}, progress_);
         wavelets::keepExactly(result, field_, progress_);
         return result;
     }
@@ -159,7 +164,7 @@ class Editor {
     }
 
     ToolFunction functionOf(const EditTool& tool, double reach) const {
-        return {tool, story_.text, field_.transform(), options_.level, reach, progress_};
+        return {tool, story_.text, field_.transform(), order_.halvings(step_), reach, progress_};
     }
 
     void unite(const EditTool& tool, bool cut, const char* nothing) {
@@ -203,19 +208,21 @@ class Editor {
             takeWhole(std::move(*pyramid));
             return;
         }
-        const int step = kStepsPerLevel * options_.level;
-        const BSplineField level = pyramid_
-                                       ? pyramid_->field(step, progress_)
-                                       : wavelets::descend(field_, {.maxSteps = step}, progress_).coarsest;
+        const BSplineField level =
+            pyramid_ ? pyramid_->field(step_, progress_)
+                     : wavelets::descend(field_, {.order = order_, .maxSteps = step_}, progress_).coarsest;
         const auto& after = std::get<BSplineField>(other);
         requireLattice(after, level, options_.level, story_.text);
-        take(replaced(field_, level, after, options_.level, progress_),
+        take(replaced(field_, level, after, order_.halvings(step_), progress_),
              "is what the level is already; nothing would change");
     }
 
     void takeWhole(wavelets::Pyramid other) {
         BSplineField finest = other.field(0, progress_);
         requireLattice(finest, field_, 0, story_.text);
+        if (other.order != order_)
+            throw InputError(story_.text,
+                             "was made with other --axes than the pyramid, so its levels are others");
         if (wavelets::areSame(finest, field_))
             throw InputError(story_.text, "has the level 0 that is there already; nothing would change");
         tellBefore();
@@ -245,6 +252,8 @@ class Editor {
     }
 
     const EditingOptions& options_;
+    StepOrder order_;
+    int step_;  // of options_.level
     const Progress& progress_;
     const wavelets::Pyramid* pyramid_;  // of field_; null where that has changed
     std::optional<wavelets::Pyramid> whole_;
@@ -259,9 +268,9 @@ void checkOptions(const wavelets::Pyramid& pyramid, const std::vector<Edit>& edi
                   const EditingOptions& options) {
     if (edits.empty()) throw UsageError("no edit; give --add, --cut, --move or --with");
     requirePositive("--blend", options.blend);
-    if (options.level < 0 || kStepsPerLevel * options.level > pyramid.stepCount())
-        throw UsageError(fmt::format("--level: the pyramid has levels 0 to {}, not {}",
-                                     pyramid.stepCount() / kStepsPerLevel, options.level));
+    const int last = pyramid.order.levelUpTo(pyramid.stepCount());
+    if (options.level < 0 || options.level > last)
+        throw UsageError(fmt::format("--level: the pyramid has levels 0 to {}, not {}", last, options.level));
     for (const Edit& edit : edits)
         if (options.blend &&
             (std::holds_alternative<EditMove>(edit) || std::holds_alternative<EditWith>(edit)))
@@ -324,7 +333,7 @@ EditedPyramid edit(const Pyramid& pyramid, const std::vector<Edit>& edits, const
     report.level = options.level;
     report.edits = editor.takeStories();
     if (!editor.isWhole()) after.source = lod::editedSource(before.source, report.edits, options);
-    const int step = kStepsPerLevel * options.level;
+    const int step = before.order.stepOf(options.level);
     if (step <= after.stepCount())
         report.touchedOfLevel =
             lod::countDiffering(before.field(step, progress), after.field(step, progress), 1e-4 * before.K);

@@ -16,11 +16,6 @@ using openvdb::Coord;
 using Floats = openvdb::FloatTree;
 using Leaf = Floats::LeafNodeType;
 
-BSplineField refined(BSplineField field, int levels, const Progress& progress) {
-    for (; levels > 0; --levels) field = insertKnots(field, progress);
-    return field;
-}
-
 void addInsideTiles(const Floats& tree, const Floats& other, std::set<Coord>& origins) {
     auto tile = tree.cbeginValueAll();
     tile.setMaxDepth(Floats::ValueAllCIter::LEAF_DEPTH - 1);
@@ -52,9 +47,10 @@ double valueAt(const Leaf* leaf, const Floats& tree, const Coord& origin, openvd
 
 }  // namespace
 
-Change replaced(const BSplineField& finest, const BSplineField& before, const BSplineField& after, int level,
-                const Progress& progress) {
-    const BSplineField a = refined(before, level, progress), b = refined(after, level, progress);
+Change replaced(const BSplineField& finest, const BSplineField& before, const BSplineField& after,
+                const std::array<int, 3>& halvings, const Progress& progress) {
+    const BSplineField a = insertKnots(before, halvings, progress),
+                       b = insertKnots(after, halvings, progress);
     const Floats &f = finest.controlPoints->constTree(), &c = a.controlPoints->constTree(),
                  &other = b.controlPoints->constTree();
     const std::vector<Coord> origins = leavesOf(c, other);

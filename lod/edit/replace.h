@@ -10,12 +10,14 @@
 // changed by K there, no ghost of it is left.
 #pragma once
 
+#include <array>
+
 #include "lod/edit/change.h"
 
 namespace isowave::lod {
 
-// level: of which `before` and `after` are the fields. REQUIRES: one lattice and one K; finest: level 0 of `before`.
-Change replaced(const BSplineField& finest, const BSplineField& before, const BSplineField& after, int level,
-                const Progress& progress);
+// halvings: how often each axis has been halved from level 0 to the level of `before` and `after`. REQUIRES: one lattice and one K; finest: level 0 of `before`.
+Change replaced(const BSplineField& finest, const BSplineField& before, const BSplineField& after,
+                const std::array<int, 3>& halvings, const Progress& progress);
 
 }  // namespace isowave::lod

@@ -141,8 +141,8 @@ struct AxisWeights {
     std::array<int, kLeaf> begin{};
     std::array<std::array<double, 4>, kLeaf> weights{};
 
-    AxisWeights(int origin, int level, int shift) {
-        const int scale = 1 << level;
+    AxisWeights(int origin, int halvings, int shift) {
+        const int scale = 1 << halvings;
         const auto cellOf = [&](int i) { return static_cast<int>(std::floor(double(i) / scale)); };
         first = cellOf(origin) - 1 + shift;
         for (int n = 0; n < kLeaf; ++n) {
@@ -161,10 +161,10 @@ struct AxisWeights {
 };
 
 // A coarse field at the 512 lattice points of a leaf of level 0, an axis at a time.
-void evaluateLeaf(const BSplineField& field, const Coord& origin, int level, const Coord& shift,
-                  LeafValues& out) {
-    const AxisWeights x(origin.x(), level, shift.x()), y(origin.y(), level, shift.y()),
-        z(origin.z(), level, shift.z());
+void evaluateLeaf(const BSplineField& field, const Coord& origin, const std::array<int, 3>& halvings,
+                  const Coord& shift, LeafValues& out) {
+    const AxisWeights x(origin.x(), halvings[0], shift.x()), y(origin.y(), halvings[1], shift.y()),
+        z(origin.z(), halvings[2], shift.z());
     constexpr int kMost = kLeaf + 3;
     std::array<double, kMost * kMost * kMost> c;
     std::array<double, kMost * kMost * kLeaf> alongZ;
@@ -201,18 +201,23 @@ std::string textOf(const EditTool& tool) {
     return path ? path->string() : "a mesh";
 }
 
-openvdb::math::Transform::Ptr latticeOf(const openvdb::math::Transform& finest, int level) {
+openvdb::math::Transform::Ptr latticeOf(const openvdb::math::Transform& finest,
+                                        const std::array<int, 3>& halvings) {
     auto lattice = finest.copy();
-    lattice->preScale(std::ldexp(1.0, level));
+    const auto [x, y, z] = halvings;
+    if (x == y && y == z)
+        lattice->preScale(std::ldexp(1.0, x));
+    else
+        lattice->preScale(Vec3d(std::ldexp(1.0, x), std::ldexp(1.0, y), std::ldexp(1.0, z)));
     return lattice;
 }
 
 double voxelOf(const openvdb::math::Transform& lattice) { return std::cbrt(nodeVolume(lattice)); }
 
 ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
-                           const openvdb::math::Transform& lattice, int level, double reach,
-                           const Progress& progress)
-    : lattice_(lattice.copy()), reach_(reach), level_(level) {
+                           const openvdb::math::Transform& lattice, const std::array<int, 3>& halvings,
+                           double reach, const Progress& progress)
+    : lattice_(lattice.copy()), reach_(reach), halvings_(halvings) {
     if (const auto* ball = std::get_if<Ball>(&tool)) {
         check(*ball, name);
         bounds_ = boundsOf(*ball);
@@ -233,8 +238,10 @@ ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
         volume_ = std::abs(topologyOf(mesh_->mesh).volume);
     }
     requireExtent(bounds_, lattice, name);
-    const auto ofLevel = latticeOf(lattice, level);
-    const double scale = std::ldexp(1.0, level);
+    const auto ofLevel = latticeOf(lattice, halvings);
+    // Cubes as large as voxels of both, and their longest edges.
+    const double scale = std::exp2((halvings[0] + halvings[1] + halvings[2]) / 3.0),
+                 longest = largestSpacing(*ofLevel) / largestSpacing(lattice);
     const double halfWidth = std::max(kLeastHalfWidth, std::ceil((reach + 2) / scale) + 1);
     const openvdb::FloatGrid::Ptr distances =
         mesh_ ? distanceFromMesh(mesh_->mesh, *ofLevel, halfWidth, mesh_->evenOdd, progress)
@@ -242,7 +249,7 @@ ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
     sampled_ = fitDistance(*distances, {.halfWidth = halfWidth, .band = halfWidth, .K = halfWidth * scale},
                            nullptr, progress);
     shift_ = Coord::round(sampled_.transform().worldToIndex(ofLevel->indexToWorld(Vec3d(0))));
-    margin_ = (reach + 2 * scale) * largestSpacing(lattice);
+    margin_ = (reach + 2 * longest) * largestSpacing(lattice);
 }
 
 double ToolFunction::distance(const Vec3d& world, double most) const {
@@ -256,7 +263,9 @@ Operand::Side ToolFunction::sideOf(const Coord& origin, int size) const {
     const Vec3d middle = origin.asVec3d() + Vec3d((size - 1) / 2.0);
     const double far = size / 2.0 * std::sqrt(3.0) * largestSpacing(*lattice_) + margin_;
     if (distance(lattice_->indexToWorld(middle), far) <= far) return Side::mixed;
-    const Vec3d coarse = middle * std::ldexp(1.0, -level_) + shift_.asVec3d();
+    const Vec3d level(std::ldexp(1.0, -halvings_[0]), std::ldexp(1.0, -halvings_[1]),
+                      std::ldexp(1.0, -halvings_[2]));
+    const Vec3d coarse = middle * level + shift_.asVec3d();
     return evaluate(sampled_, coarse) < 0 ? Side::inside : Side::outside;
 }
 
@@ -282,7 +291,7 @@ std::vector<Coord> ToolFunction::leaves(const Progress& progress) const {
 Operand::Side ToolFunction::values(const Coord& origin, LeafValues& values) const {
     const Side side = sideOf(origin, kLeaf);
     if (side != Side::mixed) return side;
-    evaluateLeaf(sampled_, origin, level_, shift_, values);
+    evaluateLeaf(sampled_, origin, halvings_, shift_, values);
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     if (*least >= reach_) return Side::outside;
     return *most <= -reach_ ? Side::inside : Side::mixed;

@@ -38,10 +38,10 @@ class ToolFunction : public Operand {
   public:
     static constexpr double kLargest = 4096;  // voxels of level 0, along an axis
 
-    // name: "--add ball:0,0,0,1", for messages. lattice: of level 0. reach: voxels of level 0 on both sides in which T is wanted.
+    // name: "--add ball:0,0,0,1", for messages. lattice: of level 0. halvings: of its axes, up to level L. reach: voxels of level 0 on both sides in which T is wanted.
     // Throws UsageError for a tool that is none; InputError for a mesh that is open or cannot be read, and a tool beyond kLargest.
     ToolFunction(const EditTool& tool, const std::string& name, const openvdb::math::Transform& lattice,
-                 int level, double reach, const Progress& progress);
+                 const std::array<int, 3>& halvings, double reach, const Progress& progress);
 
     std::vector<openvdb::Coord> leaves(const Progress& progress) const override;
     Side values(const openvdb::Coord& origin, LeafValues& values) const override;
@@ -59,7 +59,7 @@ class ToolFunction : public Operand {
     openvdb::math::Transform::ConstPtr lattice_;
     PointBox bounds_;  // world
     double volume_ = 0, reach_ = 0, margin_ = 0;
-    int level_ = 0;
+    std::array<int, 3> halvings_{};
     BSplineField sampled_;     // of level L, voxels of level 0
     openvdb::Coord shift_{0};  // lattice point 0 of level L in it
 };
@@ -67,8 +67,9 @@ class ToolFunction : public Operand {
 // "ball:0,0,0,1", "0,0,0:1,1,1", "part.stl", "a mesh": what messages call it.
 std::string textOf(const EditTool& tool);
 
-// Lattice of a level: whole multiples of 2^level.
-openvdb::math::Transform::Ptr latticeOf(const openvdb::math::Transform& finest, int level);
+// Lattice of a level: whole multiples of 2^halvings.
+openvdb::math::Transform::Ptr latticeOf(const openvdb::math::Transform& finest,
+                                        const std::array<int, 3>& halvings);
 
 // Edge of a cube that is as large as a voxel, world units.
 double voxelOf(const openvdb::math::Transform& lattice);

@@ -11,12 +11,14 @@
 #include "lod/source.h"
 #include "lod/steps.h"
 #include "polygonize/polygonize.h"
+#include "wavelets/step_order.h"
 
 namespace isowave {
 namespace {
 
-constexpr int kMostTries = 40;           // of a smaller bound
-constexpr double kLeastShrinking = 0.9;  // of the bound from one try to the next, at least
+constexpr const char* kFirstLevels = "levels.first";  // among the source's texts
+constexpr int kMostTries = 40;                        // of a smaller bound
+constexpr double kLeastShrinking = 0.9;               // of the bound from one try to the next, at least
 constexpr double kMostShrinking = 0.5;
 
 double spacingOf(const BSplineField& field, bool largest) {
@@ -112,9 +114,31 @@ class BoundedPacking {
     double bound_ = 0;                   // voxels
 };
 
+std::map<std::string, std::string> withOrder(std::map<std::string, std::string> source,
+                                             const StepOrder& order) {
+    if (!order.first.empty()) source[kFirstLevels] = lod::valueOf(wavelets::textOf(order));
+    return source;
+}
+
 std::map<std::string, std::string> sourceOf(const Solid& solid) {
     const InputReport& input = solid.input();
-    return input.kind == InputReport::Kind::pyramid ? input.source : lod::sourceOf(input, solid.fit());
+    return withOrder(
+        input.kind == InputReport::Kind::pyramid ? input.source : lod::sourceOf(input, solid.fit()),
+        solid.order());
+}
+
+// Taken out of the source.
+StepOrder takeOrder(std::map<std::string, std::string>& source, const std::string& name) {
+    const auto found = source.find(kFirstLevels);
+    if (found == source.end()) return {};
+    std::string text = found->second;
+    std::erase(text, '"');
+    const std::optional<StepOrder> order = wavelets::orderOf(text);
+    if (!order)
+        throw InputError(name, fmt::format("'{}' is {}, expected axes such as \"xy xy\"; the file is damaged",
+                                           kFirstLevels, found->second));
+    source.erase(found);
+    return *order;
 }
 
 void fill(PackReport& report, const compress::PackFacts& facts) {
@@ -166,18 +190,21 @@ double mostPackedPoints(const std::optional<double>& maxMemory) {
     return memoryLimit(maxMemory) / kBytesPerPoint;
 }
 
-compress::PackedField openPacked(const std::filesystem::path& path, const std::optional<double>& maxMemory,
-                                 const Progress& progress) {
+PackedSolid openPacked(const std::filesystem::path& path, const std::optional<double>& maxMemory,
+                       const Progress& progress) {
     compress::PackedField packed = compress::readPacked(path, mostPackedPoints(maxMemory), progress);
     if (packed.bound)
         progress.say(fmt::format("{}: level 0 is within {:g} voxels of what was packed, not to the bit",
                                  path.string(), *packed.bound));
-    return packed;
+    PackedSolid solid{std::move(packed.field), takeOrder(packed.source, path.string()), {}};
+    solid.source = std::move(packed.source);
+    return solid;
 }
 
-void packExactly(const BSplineField& field, const std::map<std::string, std::string>& source,
+void packExactly(const BSplineField& level0, const wavelets::Pyramid& pyramid,
                  const std::filesystem::path& path) {
-    compress::writeFile(path, compress::pack(field, path.string(), {.source = source}).bytes);
+    const compress::PackOptions options{.source = withOrder(pyramid.source, pyramid.order)};
+    compress::writeFile(path, compress::pack(level0, path.string(), options).bytes);
 }
 
 }  // namespace lod

@@ -16,10 +16,13 @@ double longestVoxel(const BSplineField& field) {
     return std::max({spacing.x(), spacing.y(), spacing.z()});
 }
 
-BSplineField refined(BSplineField field, int times, const Progress& progress) {
-    for (int i = 0; i < times; ++i) field = insertKnots(field, progress);
-    return field;
+// How often each axis of the finer lattice is halved to get the coarser one.
+Halvings between(const Halvings& finer, const Halvings& coarser) {
+    return {coarser[0] - finer[0], coarser[1] - finer[1], coarser[2] - finer[2]};
 }
+
+// No axis of a level is sampled more coarsely than it was.
+int leastOf(const Halvings& halvings) { return *std::min_element(halvings.begin(), halvings.end()); }
 
 bool areApart(const PointBox& a, const PointBox& b) {
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -32,13 +35,15 @@ std::string shortText(const Point& p) { return fmt::format("{:.4g},{:.4g},{:.4g}
 
 }  // namespace
 
-std::vector<int> stepsOf(const std::vector<FineRegion>& regions) {
+std::vector<int> stepsOf(const std::vector<FineRegion>& regions, const StepOrder& order) {
     std::set<int> steps;
-    for (const FineRegion& region : regions) steps.insert(kStepsPerLevel * region.level);
+    for (const FineRegion& region : regions) steps.insert(order.stepOf(region.level));
     return {steps.begin(), steps.end()};
 }
 
-FineRegions::FineRegions(const std::vector<FineRegion>& regions, const Progress& progress) {
+FineRegions::FineRegions(const std::vector<FineRegion>& regions, const StepOrder& order,
+                         const Progress& progress)
+    : order_(order) {
     for (const FineRegion& region : regions) shapes_.push_back(regionShapeOf(region, progress));
 }
 
@@ -56,39 +61,43 @@ void FineRegions::remember(int step, const BSplineField& field, int refine, doub
     Kept kept{field, refine, smallest, {}};
     const openvdb::math::Transform::ConstPtr lattice = field.transform().copy();
     for (const RegionShape& shape : shapes_)
-        if (kStepsPerLevel * shape.level == step)
+        if (order_.stepOf(shape.level) == step)
             kept.regions.push_back(std::make_shared<const RegionDistance>(shape, lattice, progress));
     if (kept.regions.empty()) return;
     if (field.controlPoints->tree().hasActiveTiles()) {
         kept.field.controlPoints = field.controlPoints->deepCopy();
         kept.field.controlPoints->tree().voxelizeActiveTiles();
     }
-    levels_[step / kStepsPerLevel] = std::move(kept);
+    kept_[step] = std::move(kept);
 }
 
 std::optional<RegionBlend> FineRegions::blended(int step, const BSplineField& own, int refine,
                                                 double smallest, const Progress& progress) const {
-    const int level = step / kStepsPerLevel;
     std::vector<LocalLevels::Stage> stages;
+    std::vector<int> samplesOf;  // of the stages, coarsest first
     RegionSummary summary;
     BSplineField field = own;
-    int at = level;  // whose lattice the field is on
-    for (auto kept = std::make_reverse_iterator(levels_.lower_bound(level)); kept != levels_.rend(); ++kept) {
+    Halvings at = order_.halvings(step);  // of the lattice that the field is on
+    for (auto kept = std::make_reverse_iterator(kept_.lower_bound(step)); kept != kept_.rend(); ++kept) {
         const auto& [finer, k] = *kept;
         const openvdb::math::Transform& lattice = k.field.transform();
         auto weights = std::make_shared<FadeWeights>(Fade(k.regions, lattice, longestVoxel(own)), lattice);
-        Blend b = blend(refined(field, at - finer, progress), k.field, *weights, progress);
+        const Halvings there = order_.halvings(finer);
+        Blend b = blend(insertKnots(field, between(there, at), progress), k.field, *weights, progress);
         if (!b.differs) continue;
         field = std::move(b.field);
-        at = finer;
+        at = there;
         summary.finePoints += b.finePoints;
-        stages.insert(stages.begin(), {finer, k.smallest, std::move(weights)});
+        samplesOf.push_back(k.refine);
+        stages.insert(stages.begin(), {there, k.smallest, std::move(weights)});
     }
     if (stages.empty()) return std::nullopt;
-    int samples = std::max(1, refine >> (level - at));
-    for (const LocalLevels::Stage& stage : stages)
-        samples = std::max(samples, levels_.at(stage.level).refine >> (stage.level - at));
-    LocalLevels levels(std::move(stages), {level, smallest, nullptr});
+    const Halvings ofOwn = order_.halvings(step);
+    int samples = std::max(1, refine >> leastOf(between(at, ofOwn)));
+    for (std::size_t i = 0; i < stages.size(); ++i)
+        samples =
+            std::max(samples, samplesOf[stages.size() - 1 - i] >> leastOf(between(at, stages[i].halvings)));
+    LocalLevels levels(std::move(stages), {ofOwn, smallest, nullptr});
     summary.coarsePoints = levels.pointsLeftOf(own, progress);
     return RegionBlend{std::move(field), std::move(levels), samples, summary};
 }

@@ -14,7 +14,7 @@
 namespace isowave::lod {
 
 // The steps of the levels that regions keep, ascending.
-std::vector<int> stepsOf(const std::vector<FineRegion>& regions);
+std::vector<int> stepsOf(const std::vector<FineRegion>& regions, const StepOrder& order);
 
 // A level's field with regions in it, on the lattice of the finest region that meets it.
 struct RegionBlend {
@@ -28,7 +28,7 @@ struct RegionBlend {
 class FineRegions {
   public:
     // Reads meshes. Throws InputError as regionShapeOf() does.
-    FineRegions(const std::vector<FineRegion>& regions, const Progress& progress);
+    FineRegions(const std::vector<FineRegion>& regions, const StepOrder& order, const Progress& progress);
 
     // Throws InputError for a region that lies beside the solid altogether. solid: the box around level 0.
     void requireWithin(const PointBox& solid) const;
@@ -50,7 +50,8 @@ class FineRegions {
         std::vector<std::shared_ptr<const RegionDistance>> regions;
     };
     std::vector<RegionShape> shapes_;
-    std::map<int, Kept> levels_;
+    StepOrder order_;
+    std::map<int, Kept> kept_;  // by step
 };
 
 }  // namespace isowave::lod

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "polygonize/quadric_collapse.h"
 
@@ -16,6 +17,10 @@ void forRanges(std::size_t count, const Progress& progress, const Each& each) {
         progress.check();
         each(range.begin(), range.end());
     });
+}
+
+int stepsBetween(const Halvings& finer, const Halvings& coarser) {
+    return coarser[0] - finer[0] + coarser[1] - finer[1] + coarser[2] - finer[2];
 }
 
 }  // namespace
@@ -64,19 +69,22 @@ std::vector<double> LocalLevels::smallestAt(const TriangleMesh& mesh, const Prog
 }
 
 void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const {
+    const auto edges = [](int steps) {
+        return std::exp2(steps / 3.0);
+    };  // how many times as long, in the mean
     for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
-        const std::int64_t ratio = std::int64_t{sampled / wanted}
-                                   << (stages_[stage].level - stages_.front().level);
+        const double ratio =
+            sampled / wanted * edges(stepsBetween(stages_.front().halvings, stages_[stage].halvings));
         const bool isOwn = stage + 1 == stages_.size();
         collapseTo(mesh, stage, !isOwn, ratio * ratio, progress);
         if (isOwn) break;
-        const int coarser = stages_[stage + 1].level - stages_[stage].level;
-        collapseTo(mesh, stage, false, ratio * ratio << coarser, progress);
+        const int coarser = stepsBetween(stages_[stage].halvings, stages_[stage + 1].halvings);
+        collapseTo(mesh, stage, false, ratio * ratio * edges(coarser), progress);
     }
 }
 
 // Of the triangles that depend on the stage and on none that is finer, have a corner inside or have none, one in `share` is left.
-void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, std::int64_t share,
+void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share,
                              const Progress& progress) const {
     if (share == 1) return;
     const std::vector<PointPlace> places = pointPlaces(mesh, progress);
@@ -90,7 +98,8 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
         const bool hasInside = places[t[0]].inside || places[t[1]].inside || places[t[2]].inside;
         follow += static_cast<std::size_t>(finest) == stage && hasInside == inside;
     }
-    options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow + follow / share;
+    options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow +
+                        static_cast<std::int64_t>(static_cast<double>(follow) / share);
     collapseByQuadrics(mesh, options, nullptr, progress);
 }
 
@@ -102,9 +111,14 @@ std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& 
     forRanges(points.size(), progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t stage = 0; stage + 1 < stages_.size(); ++stage) {
             FadeWeights::Reader weights(*stages_[stage].weights);
-            const int finer = stages_.back().level - stages_[stage].level;
+            const Halvings &fine = stages_[stage].halvings, &coarse = stages_.back().halvings;
+            const auto there = [&](const openvdb::Coord& c) {
+                return openvdb::Coord(c.x() * (1 << (coarse[0] - fine[0])),
+                                      c.y() * (1 << (coarse[1] - fine[1])),
+                                      c.z() * (1 << (coarse[2] - fine[2])));
+            };
             for (std::size_t i = begin; i != end; ++i)
-                if (isLeft[i] && weights.at(points[i] << static_cast<std::size_t>(finer)) >= 1) isLeft[i] = 0;
+                if (isLeft[i] && weights.at(there(points[i])) >= 1) isLeft[i] = 0;
         }
     });
     return std::count(isLeft.begin(), isLeft.end(), 1);

@@ -1,12 +1,14 @@
 // A mesh that is fine in regions and coarse elsewhere: which level each place follows, and a collapse that makes the
 // triangles follow it.
 //
-// The mesh comes as a blended field was sampled, r times along each axis of the finest level's voxel, everywhere. A level k steps of
-// scale coarser has voxels 2^k times as large, and a mesh of it that is sampled s times a voxel has (s / (2^k r))^2 of these
-// triangles. So the triangles that follow this level are collapsed to that share, level by level, while all points that follow another
-// one stay. Where a level fades into one that is k' coarser, the share is the mean (geometric) of both: 2^-k' of the finer one's.
+// The mesh comes as a blended field was sampled, r times along each axis of the finest level's voxel, everywhere. A level that is n
+// steps coarser has voxels 2^n times as large, 2^k in the mean (geometric) of the axes, k = n / 3, and a mesh of it that is sampled s
+// times a voxel has about (s / (2^k r))^2 of these triangles. So the triangles that follow this level are collapsed to that share, level
+// by level, while all points that follow another one stay. Where a level fades into one that is k' coarser, the share is the mean
+// (geometric) of both: 2^-k' of the finer one's.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -15,10 +17,13 @@
 
 namespace isowave::lod {
 
+// How often each axis has been halved since level 0.
+using Halvings = std::array<int, 3>;
+
 class LocalLevels {
   public:
     struct Stage {
-        int level = 0;
+        Halvings halvings{};
         double smallest = 0;  // parts and cavities below that are specks there, world units^3
         std::shared_ptr<const FadeWeights> weights;
     };
@@ -45,7 +50,7 @@ class LocalLevels {
         bool inside = false;
     };
     std::vector<PointPlace> pointPlaces(const TriangleMesh& mesh, const Progress& progress) const;
-    void collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, std::int64_t share,
+    void collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share,
                     const Progress& progress) const;
 
     std::vector<Stage> stages_;  // the own level is the last one

@@ -15,6 +15,7 @@ Given = list[tuple[str, str]]
 _BY_X = {"spacing", "size"}  # 0.9x0.9x1.5; other lists take commas
 _RANGES = {"levels", "steps"}
 _SEVERAL = {"fine", "add", "cut"}  # an option for each of them
+_RENAMED = {"step_axes": "axes"}  # axes is the order of an array's indices
 
 
 def _number(name: str, value: Any) -> str:
@@ -28,7 +29,7 @@ def _number(name: str, value: Any) -> str:
 
 
 def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
+    return "--" + _RENAMED.get(name, name).replace("_", "-")
 
 
 def _range(name: str, value: Any) -> str:

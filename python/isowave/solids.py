@@ -166,7 +166,9 @@ def _value_of(text: str) -> Any:
 
 
 class Pyramid:
-    """A solid taken apart step by step, without loss. Step s has s directions halved; level l is step 3 l.
+    """A solid taken apart step by step, without loss. Step s has s directions halved.
+
+    Level l is step 3 l of voxels that are cubes; ``steps`` says which step is which level of others.
 
     >>> ball = np.linalg.norm(np.indices((24, 24, 24)) - 11.5, axis=0) < 8
     >>> pyramid = analyse(ball, spacing=(1, 1, 1))
@@ -329,8 +331,9 @@ class Level(Adapters):
 
     @property
     def level(self) -> Optional[int]:
-        """step / 3, where that is whole."""
-        return self.step // 3 if self.step % 3 == 0 else None
+        """None between two levels: step / 3 of cubic voxels, where that is whole. Of a budget as for step."""
+        level = self.report["level"]
+        return None if level is None else int(level)
 
     @property
     def field(self) -> Field:
@@ -493,6 +496,8 @@ def lod(
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
     band: Optional[float] = None,
+    # what steps halve
+    step_axes: Optional[str] = None,
     # files
     volume: Optional[int] = None,
     size: Optional[Sequence[int]] = None,
@@ -531,6 +536,8 @@ def lod(
     space: "LPS" (without it) or "RAS", the world of affine, origin and direction. Meshes are LPS.
 
     levels, steps: a number, (first, last) with both included and either None, a range, or the command's text "1..3".
+    step_axes: the option --axes: "auto" (without it), where a voxel's edges differ by a factor of 2 or more, lets the first levels halve
+        the short ones alone; "cubes" does so wherever that brings voxels nearer to a cube; "xyz" lets every level halve all three.
     fine: a region "x,y,z:x,y,z" or "mesh.stl", ":1" behind it for level 1 instead of 0; or several. Coarser levels keep the
         details of that level there; ``fine_within`` widens all of them.
     progress: a callback (share of the stage 0 to 1, stage), always called by the thread that called lod(), or a bar of tqdm.
@@ -558,7 +565,7 @@ def lod(
     opening = given(
         iso=iso, label=label, invert=invert, open_border=open_border, nan=nan, voxels=voxels, voxel=voxel,
         close_holes=close_holes, thicken=thicken, unit=unit, fit=fit, half_width=half_width, band=band, volume=volume,
-        size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
+        step_axes=step_axes, size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
         time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory,
     )  # fmt: skip
     _native.check_ladder_options(making + given(open_border=open_border))
@@ -592,6 +599,7 @@ def analyse(
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
     band: Optional[float] = None,
+    step_axes: Optional[str] = None,
     volume: Optional[int] = None,
     size: Optional[Sequence[int]] = None,
     type: Optional[str] = None,
@@ -622,7 +630,7 @@ def analyse(
     opening = given(
         iso=iso, label=label, invert=invert, open_border=open_border, nan=nan, voxels=voxels, voxel=voxel,
         close_holes=close_holes, thicken=thicken, unit=unit, fit=fit, half_width=half_width, band=band, volume=volume,
-        size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
+        step_axes=step_axes, size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
         time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory,
     )  # fmt: skip
     return Pyramid(_native.analyse(_open(source, faces, geometry, opening, watch), watch), watch.remarks)

@@ -108,7 +108,7 @@ tools::TileChoice tilesOf(const MadeLadder& made, const std::string& format) {
 tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names) {
     tools::LadderFiles files;
     for (std::size_t i = 0; i < made.levelCount(); ++i)
-        files.levels.push_back(names.ofStep(made.ladder.levels[i].report.step));
+        files.levels.push_back(names.ofLevel(made.ladder.levels[i].report));
     for (const BudgetLevel& budget : made.ladder.budgets)
         files.budgets.push_back(names.ofBudget(budget.report));
     return files;

@@ -234,10 +234,15 @@ def at_lattice(c):
     return c
 
 
-def pyramid(field, steps):
+def in_turn(ndim, steps):
+    return [s % ndim for s in range(steps)]
+
+
+def pyramid(field, axes):
+    """axes: which one each step halves."""
     stack, fields = [], [field]
-    for s in range(steps):
-        coarse, details, memo = analyse_axis(fields[-1], s % field.c.ndim)
+    for axis in axes:
+        coarse, details, memo = analyse_axis(fields[-1], axis)
         stack.append((details, memo))
         fields.append(coarse)
     return fields, stack
@@ -250,7 +255,7 @@ def demo():
     part = (np.hypot(x, y) < 20) & (np.abs(z) < 15) & ~(np.hypot(x, y) < 7) & ~(np.hypot(x, z) < 4)
     for solid, steps in ((disc, 10), (part, 12)):
         f0 = fit(np.pad(solid, 6))
-        fields, stack = pyramid(f0, steps)
+        fields, stack = pyramid(f0, in_turn(solid.ndim, steps))
         print('step  known points  defined size  inside components / outside components')
         stored = 0
         for s, f in enumerate(fields):
@@ -277,7 +282,7 @@ def golden_intervals():
     return cases
 
 
-def golden_field(inside, steps):
+def golden_field(inside, axes):
     """One field and its steps, sparse: known points with value and sign, details by coarse position."""
     def points(f):
         at = np.argwhere(f.known)
@@ -286,7 +291,7 @@ def golden_field(inside, steps):
 
     f0 = fit(np.pad(inside, 6))
     f0.c = np.round(f0.c, 6)
-    fields, stack = pyramid(f0, steps)
+    fields, stack = pyramid(f0, axes)
     out = {'K': 1.0, 'fields': [points(f) for f in fields], 'details': []}
     for s, (details, memo) in enumerate(stack):
         axis, at, value = memo[0], [], []
@@ -302,7 +307,7 @@ def golden_field(inside, steps):
                 value.append(float('%.9g' % v))
         out['details'].append({'axis': axis, 'at': at, 'value': value})
     back = fields[-1]
-    for s in range(steps - 1, -1, -1):
+    for s in range(len(axes) - 1, -1, -1):
         back = synthesise_axis(back, *stack[s], fields[s].origin)
     assert np.abs(back.c - f0.c).max() < 1e-12
     return out
@@ -319,9 +324,10 @@ def golden(folder):
     y, x = np.mgrid[:40, :34] - 16.5
     disc = (np.hypot(x, y) < 15) & ~(np.hypot(x - 5, y + 3) < 4.2) & ~(np.hypot(x + 7, y) < 1.5)
     plane_noise = rng.random((24, 17)) < 0.5
-    files = {'plane': golden_field(disc, 8), 'plane_noise': golden_field(plane_noise, 8),
-             'intervals': golden_intervals(), 'part': golden_field(part, 7), 'sheet': golden_field(sheet, 7),
-             'noise': golden_field(noise, 7)}
+    plane, space = in_turn(2, 8), in_turn(3, 7)
+    files = {'plane': golden_field(disc, plane), 'plane_noise': golden_field(plane_noise, plane),
+             'intervals': golden_intervals(), 'part': golden_field(part, space), 'sheet': golden_field(sheet, space),
+             'noise': golden_field(noise, space), 'sheet_any_order': golden_field(sheet, [2, 0, 0, 1, 2, 2, 1])}
     for name, content in files.items():
         with open('%s/%s.json' % (folder, name), 'w') as out:
             json.dump(content, out, separators=(',', ':'))

@@ -462,6 +462,48 @@ TEST(RefineField, IsTheSameFunction) {
     }
 }
 
+TEST(RefineField, OnSomeAxesIsTheSameFunctionToo) {
+    const std::vector<BSplineField> fields{fieldFromDistance(14, torus(7, 3)), noiseField(16, 3)};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> coordinate(-12, 20);
+    for (const BSplineField& field : fields)
+        for (const std::array<int, 3>& times :
+             {std::array{1, 1, 0}, std::array{0, 0, 1}, std::array{0, 2, 1}}) {
+            const BSplineField fine = insertKnots(field, times);
+            const Vec3d scale(1 << times[0], 1 << times[1], 1 << times[2]);
+            for (int i = 0; i < 3000; ++i) {
+                const Vec3d x(coordinate(random), coordinate(random), coordinate(random));
+                ASSERT_NEAR(evaluate(fine, x * scale), evaluate(field, x), 8e-7 * field.K);
+            }
+            EXPECT_LT((fine.transform().indexToWorld(Vec3d(3, 5, 7) * scale) -
+                       field.transform().indexToWorld(Vec3d(3, 5, 7)))
+                          .length(),
+                      1e-12);
+            EXPECT_TRUE(fine.shape->tree().hasSameTopology(fine.controlPoints->tree()));
+            for (auto voxel = fine.controlPoints->cbeginValueOff(); voxel; ++voxel)
+                ASSERT_EQ(std::abs(*voxel), static_cast<float>(field.K));
+        }
+}
+
+TEST(RefineField, NoTimesIsTheFieldItself) {
+    const BSplineField field = noiseField(16, 3);
+    EXPECT_EQ(insertKnots(field, std::array{0, 0, 0}).controlPoints, field.controlPoints);
+}
+
+TEST(RefineField, OneAxisAfterAnotherKnowsWhatAllAtOnceKnows) {
+    const BSplineField field = fieldFromDistance(20, sphere(13));
+    const BSplineField all = insertKnots(field);
+    BSplineField each = field;
+    for (const AxisChoice& axis :
+         {AxisChoice{true, false, false}, AxisChoice{false, true, false}, AxisChoice{false, false, true}})
+        each = insertKnots(each, axis);
+    EXPECT_EQ(each.controlPointCount(), all.controlPointCount());
+    for (auto c = all.controlPoints->cbeginValueOn(); c; ++c) {
+        ASSERT_TRUE(each.controlPoints->tree().isValueOn(c.getCoord()));
+        ASSERT_NEAR(each.controlPoints->tree().getValue(c.getCoord()), *c, 1e-6 * field.K);
+    }
+}
+
 TEST(RefineField, KeepsKOutsideIAndTheShapesTopologyAndSigns) {
     const BSplineField field = fieldFromDistance(20, sphere(13));
     const BSplineField fine = insertKnots(field);

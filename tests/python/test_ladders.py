@@ -255,16 +255,36 @@ def test_errors_of_the_job_are_the_commands_one_line(tmp_path):
         assert str(caught.value) == complaint("lod", GEAR, "-o", tmp_path / "out", *words), options
 
 
+def test_levels_of_flat_voxels_make_them_cubes_first(tmp_path):
+    x, y, z = np.indices((40, 40, 20))
+    ball = np.hypot(np.hypot(x - 19.5, y - 19.5), 2 * (z - 9.5)) < 15
+    ladder = isowave.lod(ball, spacing=(1, 1, 2), levels=(0, 2))
+    assert [level.step for level in ladder] == [0, 2, 5] and [level.level for level in ladder] == [0, 1, 2]
+    assert [level.report["spacing"] for level in ladder] == [[1, 1, 2], [2, 2, 2], [4, 4, 4]]
+    assert ladder.report["first_levels"] == ["xy"] and any("--axes xyz" in remark for remark in ladder.remarks)
+    ladder.save(tmp_path / "ball")
+    assert sorted(path.name for path in tmp_path.glob("ball/*.ply")) == ["ball_L0.ply", "ball_L1.ply", "ball_L2.ply"]
+    in_turn = isowave.lod(ball, spacing=(1, 1, 2), levels=(0, 2), step_axes="xyz")
+    assert [level.step for level in in_turn] == [0, 3, 6] and in_turn.report["first_levels"] == []
+    pyramid = isowave.analyse(ball, spacing=(1, 1, 2))
+    assert [step["level"] for step in pyramid.steps][:6] == [0, None, 1, None, None, 2]
+    assert pyramid.field(2).spacing == isowave.field(ball, spacing=(1, 1, 2), step=2).spacing == (2, 2, 2)
+    pyramid.save(tmp_path / "ball.vdb")
+    with pytest.raises(isowave.UsageError, match="--axes has no meaning for"):
+        isowave.lod(tmp_path / "ball.vdb", step_axes="xyz")
+
+
 def test_every_option_of_the_command_is_an_argument():
     import inspect
 
     from isowave import _native, plane
 
     parameters = set(inspect.signature(isowave.lod).parameters)
-    options = {name[2:].replace("-", "_") for name in _native.solid_option_names()}
+    renamed = {"axes": "step_axes"}  # axes is the order of an array's indices
+    options = {renamed.get(name, name) for name in (n[2:].replace("-", "_") for n in _native.solid_option_names())}
     assert options <= parameters, options - parameters
     shown = command("lod", "--help").stdout
-    names = {name.replace("-", "_") for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
+    names = {renamed.get(name, name.replace("-", "_")) for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
     assert len(names) > 30 and names - parameters == {
         "output", "format", "colour", "json", "view", "glb_lods", "tiles", "quiet", "verbose", "dry_run", "list",
     }  # fmt: skip

@@ -170,7 +170,7 @@ std::vector<StepMesh> stepsOf(const BSplineField& field) {
     wavelets::analyse(field, {}, {}, [&](int step, const BSplineField& f) {
         TriangleMesh mesh = polygonize(f);
         if (mesh.triangles.empty()) return;
-        steps.push_back({step, mesh, topologyOf(mesh), f.transform().voxelSize().length()});
+        steps.push_back({step, mesh, topologyOf(mesh), f.transform().voxelSize().length(), step % 3 == 0});
     });
     return steps;
 }

@@ -57,6 +57,7 @@ TEST_F(RingBudget, WritesOneMeshABudgetAndSaysWhereItCameFromAndWhy) {
                                      "max_genus",
                                      "min_component",
                                      "step",
+                                     "level",
                                      "why",
                                      "vertices",
                                      "triangles",

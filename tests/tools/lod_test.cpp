@@ -64,9 +64,9 @@ TEST_F(BallLadder, PutsOneMeshALevelAndAReportIntoItsFolder) {
 TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     ladder({});
     const Json r = report();
-    EXPECT_EQ(keysOf(r), (std::set<std::string>{"version", "input", "fit", "K", "levels", "budgets", "steps",
-                                                "coefficients_stored", "control_points", "seconds",
-                                                "peak_memory_bytes", "threads"}));
+    EXPECT_EQ(keysOf(r), (std::set<std::string>{"version", "input", "fit", "K", "first_levels", "levels",
+                                                "budgets", "steps", "coefficients_stored", "control_points",
+                                                "seconds", "peak_memory_bytes", "threads"}));
     EXPECT_EQ(keysOf(r["input"]), (std::set<std::string>{"path", "kind", "format", "component_type",
                                                          "dimensions", "spacing", "range", "iso", "inverted",
                                                          "open_border", "origin", "direction", "space"}));

@@ -1,6 +1,7 @@
 // The promises of wavelets/pyramid_file.h.
 #include "wavelets/pyramid_file.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -45,6 +46,51 @@ TEST(PyramidFile, ComesBackToTheBitForTheWholeZoo) {
         expectSame(*read.coarsest.controlPoints, *pyramid.coarsest.controlPoints);
         expectSame(*read.field(0).controlPoints, *pyramid.field(0).controlPoints);
         EXPECT_EQ(read.field(0).transform(), field.transform());
+    }
+}
+
+TEST(PyramidFile, KeepsTheOrderOfItsSteps) {
+    const test::TempFolder folder("order");
+    const BSplineField field = zoo::distanceField(zoo::smoothSolids()[0]);
+    for (const StepOrder& order : {StepOrder{}, StepOrder{{"xy", "xy"}}, StepOrder{{"zx", "xyz", "zy"}}}) {
+        const Pyramid pyramid = analyse(field, {.order = order});
+        writePyramid(folder / "a.vdb", pyramid);
+        const Pyramid read = readPyramid(folder / "a.vdb");
+        EXPECT_EQ(read.order, order);
+        EXPECT_EQ(readOrder(folder / "a.vdb"), order);
+        expectSame(*read.field(0).controlPoints, *pyramid.field(0).controlPoints);
+        for (int step = 0; step < pyramid.stepCount(); ++step)
+            EXPECT_EQ(read.steps[static_cast<std::size_t>(step)].axis,
+                      pyramid.steps[static_cast<std::size_t>(step)].axis);
+    }
+}
+
+TEST(PyramidFile, WithoutFirstLevelsHasLevelsOfAllAxes) {
+    const test::TempFolder folder("in_turn");
+    writePyramid(folder / "a.vdb", small());
+    const VdbContent content = readVdb(folder / "a.vdb");
+    EXPECT_FALSE((*content.metadata)["isowave:first_levels"]);  // as in files from before there were any
+    EXPECT_EQ(readPyramid(folder / "a.vdb").order, StepOrder{});
+}
+
+TEST(PyramidFile, RefusesFirstLevelsThatAreNoneOrContradictTheSteps) {
+    const test::TempFolder folder("first_levels");
+    writePyramid(folder / "whole.vdb", small());
+    const VdbContent content = readVdb(folder / "whole.vdb");
+    const openvdb::GridCPtrVec grids(content.grids.begin(), content.grids.end());
+    for (const auto& [text, complaint] :
+         {std::pair{"xyz", ""}, std::pair{"a", "the first levels are 'a'"},
+          std::pair{"xy x", "step 3 halves z, and x by the first levels 'xy x'"}}) {
+        openvdb::MetaMap metadata(*content.metadata);
+        metadata.insertMeta("isowave:first_levels", openvdb::StringMetadata(text));
+        writeVdb(folder / "a.vdb", grids, metadata);
+        try {
+            readPyramid(folder / "a.vdb");
+            EXPECT_STREQ(complaint, "");
+        } catch (const InputError& error) {
+            EXPECT_STRNE(complaint, "");
+            EXPECT_THAT(error.what(), testing::HasSubstr(complaint));
+        }
     }
 }
 

@@ -263,6 +263,41 @@ TEST(Pyramid, RefusesAShapeThatKnowsPointsWhichTheFieldHasNot) {
             InputError);
 }
 
+// ---- other orders of the axes
+
+const std::vector<StepOrder>& someOrders() {
+    static const std::vector<StepOrder> orders{
+        {{"xy", "xy"}}, {{"z"}}, {{"x", "x", "x", "x"}}, {{"zy", "x", "yyz"}}};
+    return orders;
+}
+
+TEST(Pyramid, InAnyOrderEachStepIsThatDirectionOfTheStepBefore) {
+    for (const auto& [name, field] : zoo::allFields())
+        for (const StepOrder& order : someOrders()) {
+            BSplineField expected = field;
+            const Pyramid pyramid =
+                analyse(field, {.order = order, .maxSteps = 8}, {}, [&](int step, const BSplineField& f) {
+                    if (step > 0) expected = analyseDirection(expected, order.axisAfter(step - 1)).coarse;
+                    EXPECT_TRUE(sameToTheBit(*f.controlPoints, *expected.controlPoints)) << step;
+                    EXPECT_EQ(f.transform(), expected.transform());
+                });
+            EXPECT_EQ(pyramid.order, order);
+            for (int step = 0; step < pyramid.stepCount(); ++step)
+                EXPECT_EQ(pyramid.steps[static_cast<std::size_t>(step)].axis, order.axisAfter(step));
+            EXPECT_LT(difference(field, pyramid.field(0)), 1e-5 * field.K) << name;
+        }
+}
+
+TEST(Pyramid, InAnyOrderEverySolidEndsAtOneNodeAndComesBack) {
+    for (const auto& [name, field] : zoo::allFields())
+        for (const StepOrder& order : someOrders()) {
+            const Pyramid pyramid = analyse(field, {.order = order});
+            EXPECT_EQ(pyramid.coarsest.controlPointCount(), field.controlPointCount() == 0 ? 0 : 64)
+                << name << " step " << pyramid.stepCount();
+            EXPECT_LT(difference(field, pyramid.field(0)), 1e-5 * field.K) << name;
+        }
+}
+
 // ---- the oracle
 
 BSplineField fieldFrom(const nlohmann::json& points, double K) {
@@ -279,23 +314,29 @@ BSplineField fieldFrom(const nlohmann::json& points, double K) {
     return field;
 }
 
-class Oracle : public testing::TestWithParam<const char*> {};
+struct Golden {
+    const char* file;
+    StepOrder order;
+};
+void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.file; }
+class Oracle : public testing::TestWithParam<Golden> {};
 
 TEST_P(Oracle, AgreesOnCoefficientsDetailsAndShapes) {
-    std::ifstream file(std::string(ISOWAVE_TEST_DATA "/oracle/") + GetParam() + ".json");
+    std::ifstream file(std::string(ISOWAVE_TEST_DATA "/oracle/") + GetParam().file + ".json");
     ASSERT_TRUE(file);
     const auto golden = nlohmann::json::parse(file);
     // The golden solids have no inside region without control points, so unknown points are all outside.
     const BSplineField field = fieldFrom(golden["fields"][0], golden["K"]);
     int compared = 0;
     const Pyramid pyramid =
-        analyse(field, {.maxSteps = int(golden["details"].size())}, {}, [&](int step, const BSplineField& f) {
-            const BSplineField expected = fieldFrom(golden["fields"][step], golden["K"]);
-            ASSERT_LT(difference(f, expected), 1e-6) << "step " << step;
-            for (auto v = expected.shape->cbeginValueOn(); v; ++v)
-                ASSERT_EQ(f.shape->tree().getValue(v.getCoord()), *v) << v.getCoord();
-            ++compared;
-        });
+        analyse(field, {.order = GetParam().order, .maxSteps = int(golden["details"].size())}, {},
+                [&](int step, const BSplineField& f) {
+                    const BSplineField expected = fieldFrom(golden["fields"][step], golden["K"]);
+                    ASSERT_LT(difference(f, expected), 1e-6) << "step " << step;
+                    for (auto v = expected.shape->cbeginValueOn(); v; ++v)
+                        ASSERT_EQ(f.shape->tree().getValue(v.getCoord()), *v) << v.getCoord();
+                    ++compared;
+                });
     EXPECT_EQ(compared, 8);
     for (int step = 0; step < pyramid.stepCount(); ++step) {
         const auto& expected = golden["details"][step];
@@ -313,7 +354,9 @@ TEST_P(Oracle, AgreesOnCoefficientsDetailsAndShapes) {
     EXPECT_LT(difference(field, pyramid.field(0)), 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(ThreeFields, Oracle, testing::Values("part", "sheet", "noise"));
+INSTANTIATE_TEST_SUITE_P(Fields, Oracle,
+                         testing::Values(Golden{"part", {}}, Golden{"sheet", {}}, Golden{"noise", {}},
+                                         Golden{"sheet_any_order", {{"zx", "xyz", "zy"}}}));
 
 }  // namespace
 }  // namespace isowave::wavelets

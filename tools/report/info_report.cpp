@@ -142,16 +142,16 @@ std::string textOf(const VdbInfo& info) {
 Json stepsJson(const std::vector<StepFacts>& steps) {
     Json json = Json::array();
     for (const StepFacts& f : steps)
-        json.push_back(
-            {{"step", f.step},
-             {"level", f.step % kStepsPerLevel == 0 ? Json(f.step / kStepsPerLevel) : Json(nullptr)},
-             {"spacing", triple(f.spacing)},
-             {"domain", f.domain},
-             {"control_points", f.controlPoints},
-             {"nodes", f.nodes},
-             {"details", f.details},
-             {"coefficients", f.coefficients},
-             {"leaf_occupancy", f.leafOccupancy}});
+        json.push_back({{"step", f.step},
+                        {"level", f.level ? Json(*f.level) : Json(nullptr)},
+                        {"halved", f.halvedAxis ? Json(std::string(1, "xyz"[*f.halvedAxis])) : Json(nullptr)},
+                        {"spacing", triple(f.spacing)},
+                        {"domain", f.domain},
+                        {"control_points", f.controlPoints},
+                        {"nodes", f.nodes},
+                        {"details", f.details},
+                        {"coefficients", f.coefficients},
+                        {"leaf_occupancy", f.leafOccupancy}});
     return json;
 }
 
@@ -165,6 +165,7 @@ std::string jsonOf(const PyramidInfo& info) {
     json["control_points"] = info.controlPoints;
     json["memory_bytes"] = info.memoryBytes;
     json["file_bytes"] = info.fileBytes;
+    json["first_levels"] = info.order.first;
     json["steps"] = stepsJson(info.steps);
     json["levels"] = Json::array();
     for (const LevelReport& level : info.levels) json["levels"].push_back(storyJson(level));
@@ -175,8 +176,7 @@ std::string textOf(const PyramidInfo& info) {
     Table table({"step", "level", "halved", "voxel", "domain", "control points", "nodes", "details",
                  "coefficients", "leaves full"});
     for (const StepFacts& f : info.steps)
-        table.row({std::to_string(f.step),
-                   f.step % kStepsPerLevel == 0 ? std::to_string(f.step / kStepsPerLevel) : "",
+        table.row({std::to_string(f.step), f.level ? std::to_string(*f.level) : "",
                    std::string(1, f.halvedAxis ? "xyz"[*f.halvedAxis] : '-'), timesText(f.spacing),
                    timesText(f.domain), grouped(f.controlPoints), grouped(f.nodes), grouped(f.details),
                    grouped(f.coefficients), fmt::format("{:.0f} %", 100 * f.leafOccupancy)});

@@ -54,6 +54,7 @@ struct PyramidInfo {
     double K = 1;
     std::map<std::string, std::string> source;
     std::int64_t coefficientsStored = 0, controlPoints = 0, memoryBytes = 0, fileBytes = 0;
+    StepOrder order;
     std::vector<StepFacts> steps;
     std::vector<LevelReport> levels;
 };

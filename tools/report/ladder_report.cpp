@@ -157,6 +157,7 @@ Json budgetJson(const BudgetReport& budget, const std::string& file) {
     json["max_genus"] = orNull(budget.maxGenus);
     json["min_component"] = budget.minComponent ? Json(*budget.minComponent) : Json(nullptr);
     json["step"] = budget.step;
+    json["level"] = orNull(budget.level);
     json["why"] = budget.why;
     putTopology(json, budget.topology);
     json["self_intersections"] = budget.selfIntersections;
@@ -243,6 +244,7 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
     report["input"] = objectOf(lod::fieldsOf(ladder.input));
     report["fit"] = objectOf(lod::fieldsOf(ladder.fit, ladder.input));
     report["K"] = ladder.K;
+    report["first_levels"] = ladder.order.first;
     report["levels"] = Json::array();
     for (std::size_t i = 0; i < ladder.levels.size(); ++i)
         report["levels"].push_back(levelJson(ladder.levels[i].report, nameAt(files.levels, i)));

@@ -39,9 +39,12 @@ class FieldCommand : public Command {
 
     int run(Console& console) override {
         if (output_->extension() != ".vdb") throw UsageError("-o: a field is a .vdb file; name it so");
-        const int step = step_.wanted();
+        step_.check();
+        if (hold_ == Holding::none) step_.limitReading(solid_);
         OutputFile out(*output_);
-        const Field field = made(step, console.progress());
+        Solid solid = open(arguments[0], solid_, console.progress());
+        const int step = step_.of(solid);
+        const Field field = made(std::move(solid), step, console.progress());
         field.save(*output_);
         out.commit();
 
@@ -53,11 +56,9 @@ class FieldCommand : public Command {
     }
 
   private:
-    Field made(int step, const Progress& progress) {
-        if (hold_ == Holding::local)
-            return makeLevelField(open(arguments[0], solid_, progress), step, {}, progress);
-        solid_.finestStep = step;
-        return fieldOf(open(arguments[0], solid_, progress), step, progress);
+    Field made(Solid solid, int step, const Progress& progress) const {
+        if (hold_ == Holding::local) return makeLevelField(std::move(solid), step, {}, progress);
+        return fieldOf(std::move(solid), step, progress);
     }
 
     StepChoice step_;

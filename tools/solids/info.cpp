@@ -81,6 +81,7 @@ PyramidInfo pyramidInfo(const fs::path& path, const LevelOptions& options, Conso
     info.controlPoints = pyramid.controlPoints();
     info.memoryBytes = pyramid.memoryBytes();
     info.fileBytes = static_cast<std::int64_t>(fs::file_size(path));
+    info.order = pyramid.order();
     info.steps = pyramid.steps();
     info.levels = describeLevels(pyramid, options, console.progress());
     return info;

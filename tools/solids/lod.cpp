@@ -67,7 +67,7 @@ struct MeshWriter {
     }
     LadderVisitor visitor() {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
-            files.levels.push_back(names.ofStep(report.step));
+            files.levels.push_back(names.ofLevel(report));
             fromLevel0 = fromLevel0 || report.step == 0;
             if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
             if (tiles) addTiles(*tiles, report, mesh, progress);
@@ -233,7 +233,9 @@ const std::string& lodDetails() {
         "makes "
         "the folder out/part with part_L0.ply, part_L1.ply, ... and report.json; with --steps the meshes "
         "are "
-        "part_s0.ply, part_s1.ply, ... Level L is step 3L: every axis halved L times. With a budget there "
+        "part_s0.ply, part_s1.ply, ... Level L is step 3L: every axis halved L times; where voxels are no "
+        "cubes "
+        "the first levels halve their short edges alone (--axes). With a budget there "
         "is "
         "one mesh a budget instead of one a level (give --levels to have both): the step whose topology "
         "suits "

@@ -36,33 +36,34 @@ class MeshCommand : public Command {
     bool hasOtherInputs() const override { return parts_.list.has_value(); }
 
     int run(Console& console) override {
-        const int step = step_.wanted();
-        if (!needsLevel0(level_)) solid_.finestStep = step;
-        if (parts_.asksForParts(arguments)) return runParts(console, step);
+        step_.check();
+        if (!needsLevel0(level_)) step_.limitReading(solid_);
+        if (parts_.asksForParts(arguments)) return runParts(console);
         const Part all{arguments[0], *output_};
         console.print(
-            fmt::format("{}: {}\n", output_->string(), write(all, formatWanted(), step, console.progress())));
+            fmt::format("{}: {}\n", output_->string(), write(all, formatWanted(), console.progress())));
         return 0;
     }
 
   private:
-    int runParts(Console& console, int step) const {
+    int runParts(Console& console) const {
         const MeshFormat format = format_.value_or(MeshFormat::ply);
         PartsRun all(partsOf(parts_.inputs(arguments), *output_, extensionOf(format)), console);
         const int code = all.run(
             [&](const Part& part, const Progress& progress) {
-                return PartStory{.text = write(part, format, step, progress)};
+                return PartStory{.text = write(part, format, progress)};
             },
             /*silent=*/false);
         if (code != kInterrupted) console.print(all.text());
         return code;
     }
     // Returns what there is to tell of the mesh.
-    std::string write(const Part& part, MeshFormat format, int step, const Progress& progress) const {
+    std::string write(const Part& part, MeshFormat format, const Progress& progress) const {
         OutputFile out(part.output);
         Solid solid = open(part.input, solid_, progress);
         const Space space = space_.of(solid);
         const double metresPerUnit = metresPerUnitOf(solid);
+        const int step = step_.of(solid);
         const Level level = makeLevel(std::move(solid), step, level_, progress);
         writeMesh(part.output, level.mesh, format, {space, metresPerUnit});
         out.commit();

@@ -7,7 +7,7 @@
 namespace isowave::tools {
 namespace {
 
-// Coordinates have 32 bits, so an axis is halved at most so often.
+// Coordinates have 32 bits, so an axis is halved at most so often, and of several levels each halves one axis at least.
 constexpr int kMostSteps = 32 * kStepsPerLevel;
 
 std::string trianglesSuffix(std::int64_t triangles) { return fmt::format("T{}", triangles); }
@@ -24,8 +24,12 @@ std::string MeshNames::named(const std::string& suffix) const {
     return fmt::format("{}_{}{}", folder_, suffix, extensionOf(format_));
 }
 
-std::string MeshNames::ofStep(int step) const {
-    return named(levels_.steps ? fmt::format("s{}", step) : fmt::format("L{}", step / kStepsPerLevel));
+std::string MeshNames::numbered(int number) const {
+    return named(fmt::format("{}{}", levels_.steps ? "s" : "L", number));
+}
+
+std::string MeshNames::ofLevel(const LevelReport& level) const {
+    return numbered(levels_.steps ? level.step : *level.level);
 }
 
 std::string MeshNames::ofBudget(const BudgetReport& budget) const {
@@ -46,11 +50,9 @@ std::string MeshNames::suffixOf(const std::string& name) const {
 
 std::vector<std::string> MeshNames::all() const {
     std::vector<std::string> names;
-    const int stride = levels_.steps ? 1 : kStepsPerLevel;
     const StepRange range = levels_.steps ? *levels_.steps : levels_.levels.value_or(StepRange{});
-    const int last = range.last ? *range.last * stride : kMostSteps;
-    for (int step = range.first * stride; step <= std::min(last, kMostSteps); step += stride)
-        names.push_back(ofStep(step));
+    const int last = std::min(range.last.value_or(kMostSteps), kMostSteps);
+    for (int number = range.first; number <= last; ++number) names.push_back(numbered(number));
     for (const std::int64_t n : budgets_.triangles) names.push_back(named(trianglesSuffix(n)));
     for (const double ratio : budgets_.ratios) names.push_back(named(ratioSuffix(ratio)));
     for (const double tolerance : budgets_.tolerances) names.push_back(named(toleranceSuffix(tolerance)));

@@ -16,7 +16,7 @@ class MeshNames {
               const BudgetOptions& budgets);
 
     // part_L2.ply; with --steps part_s5.ply
-    std::string ofStep(int step) const;
+    std::string ofLevel(const LevelReport& level) const;
     // part_T20000.ply, part_R0.01.ply, part_D0.5.ply; part_chosen.ply where only the topology is limited.
     std::string ofBudget(const BudgetReport& budget) const;
     // part.html, the page of --view.
@@ -30,6 +30,8 @@ class MeshNames {
 
   private:
     std::string named(const std::string& suffix) const;
+    // Of a level, or of a step where steps are asked for.
+    std::string numbered(int number) const;
 
     std::string folder_;
     MeshFormat format_;

@@ -109,6 +109,17 @@ void declareLevelIso(OptionList& options, LevelOptions& level) {
 void declareSolid(OptionList& options, SolidOptions& solid) {
     declareInside(options, solid);
     declareFit(options, solid);
+    options.value(
+        "--axes", "auto|cubes|xyz", "auto",
+        "which axes levels halve. auto: where a voxel's edges differ by a factor of 2 or more, the short "
+        "ones "
+        "alone until they do not, then all; cubes: the short ones alone wherever that brings voxels nearer "
+        "to "
+        "a cube; xyz: all from the start",
+        [&](const std::string& v) {
+            solid.axes = choice<StepAxes>(
+                v, {{"auto", StepAxes::automatic}, {"cubes", StepAxes::cubes}, {"xyz", StepAxes::xyz}});
+        });
     declareImage(options, solid);
     options.value("--grid", "NAME", "", ".vdb with several level sets: which grid",
                   [&](const std::string& v) { solid.grid = v; });
@@ -193,7 +204,9 @@ void declareMesh(OptionList& options, LevelOptions& level, bool features) {
 void declareLevels(OptionList& options, LevelOptions& level) {
     options.value("--levels", "A..B", "0 until one node is left", "which levels (A.., ..B and A will do)",
                   [&](const std::string& v) { level.levels = range(v); });
-    options.value("--steps", "A..B", "", "steps instead of levels; three steps are a level",
+    options.value("--steps", "A..B", "",
+                  "steps instead of levels: each halves one axis, three are a level (two or one where voxels "
+                  "are no cubes)",
                   [&](const std::string& v) { level.steps = range(v); });
 }
 
@@ -255,9 +268,13 @@ void StepChoice::declare(OptionList& options) {
     });
 }
 
-int StepChoice::wanted() const {
-    if (step && level) throw UsageError("--step and --level exclude each other; level L is step 3L");
-    return level ? kStepsPerLevel * *level : step.value_or(0);
+void StepChoice::check() const {
+    if (step && level) throw UsageError("--step and --level exclude each other; give one of them");
+}
+
+void StepChoice::limitReading(SolidOptions& solid) const {
+    solid.finestStep = step.value_or(0);
+    solid.finestLevel = level;
 }
 
 namespace {

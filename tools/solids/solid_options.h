@@ -30,8 +30,12 @@ struct StepChoice {
     std::optional<int> step, level;
 
     void declare(OptionList& options);
-    // The step that was asked for; 0 when neither was given. Throws UsageError when both were.
-    int wanted() const;
+    // Throws UsageError when both were given.
+    void check() const;
+    // Of a pyramid's file no more is read.
+    void limitReading(SolidOptions& solid) const;
+    // The step of this solid that was asked for; 0 when neither was given.
+    int of(const Solid& solid) const { return level ? solid.order().stepOf(*level) : step.value_or(0); }
 };
 
 void declareFormat(OptionList& options, std::optional<MeshFormat>& format);
