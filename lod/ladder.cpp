@@ -79,7 +79,7 @@ class Maker {
     void visit(int step, const BSplineField& field) {
         if (vanished_ || !choice_.visits(step)) return;
         const double begin = clock_.secondsSoFar();
-        if (choice_.isKept(step) && step != 0 && !choice_.has(step)) return mesher_.prepare(step, field);
+        if (step != 0 && !choice_.has(step) && !budgets_.wanted()) return mesher_.prepare(step, field);
         LevelMesh made = mesher_.make(step, field);
         vanished_ = made.mesh.triangles.empty();
         if (step == 0) {
@@ -269,7 +269,8 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
     lod::checkBudgets(budgetOptions, border.has_value());
     const StepOrder order = solid.order();
     lod::Budgets budgets(budgetOptions, lod::trianglesOf(solid), state.surface, order);
-    const lod::StepChoice choice(options, budgets.wanted(), order);
+    const lod::StepChoice choice(options, budgets.wanted(), lod::levelsLimit(options, border.has_value()),
+                                 order);
     lod::Maker maker(choice, budgets, options, order, border, lod::truthOf(solid), state.surface, visitor,
                      progress, clock);
     Ladder ladder;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "base/number_text.h"
 #include "hold/hold.h"
@@ -242,16 +243,23 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
 }
 
 void LevelMesher::prepare(int step, const BSplineField& field) {
-    const std::optional<SolidCounts> before = before_;
-    make(step, field);
-    if (before) before_ = before;
+    const std::vector<int> kept = stepsOf(options_.fine, order_);
+    if (step == 0 || std::binary_search(kept.begin(), kept.end(), step)) {
+        make(step, field);
+    } else {
+        Draft draft = chosen(step, fieldToDraw(step, field));
+        limit(draft);
+        if (!draft.level.report.vanished()) before_ = draft.counts();
+    }
 }
 
 std::vector<int> LevelMesher::stepsBefore(int step) const {
-    std::vector<int> steps = stepsOf(options_.fine, order_);
-    std::erase_if(steps, [step](int s) { return s >= step; });
-    if (needsLevel0() && step != 0 && (steps.empty() || steps.front() != 0)) steps.insert(steps.begin(), 0);
-    return steps;
+    std::vector<int> all = stepsOf(options_.fine, order_);
+    if (needsLevel0()) all.push_back(0);
+    if (levelsLimit(options_, openBorder_.has_value()))
+        for (int level = 1; order_.stepOf(level) < step; ++level) all.push_back(order_.stepOf(level));
+    std::set<int> steps(all.begin(), all.end());
+    return {steps.begin(), steps.lower_bound(step)};
 }
 
 void LevelMesher::addRegions(LevelMesh& level) {

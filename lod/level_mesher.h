@@ -32,6 +32,11 @@ struct LevelMesh {
     std::vector<LocalLevels::Place> places = {};  // of triangles; empty without regions
 };
 
+// Whether a level may not have more parts, handles and cavities than the one before it, which must be looked at then.
+inline bool levelsLimit(const LevelOptions& options, bool openBorder) {
+    return options.hold == Holding::local && !openBorder;
+}
+
 class LevelMesher {
   public:
     // thinToo: also say how much of what is thin is kept. ofBudget: no level is asked for, only a step for a budget to choose,
@@ -48,7 +53,7 @@ class LevelMesher {
     // others for what is thin and for no more parts, handles and cavities than level 0 has.
     // Regions that keep a finer level are blended in at last, so that levels limit each other as they do without.
     LevelMesh make(int step, const BSplineField& field);
-    // A level that nobody asked for, which regions of coarser ones keep: those are not limited by what it has.
+    // A level that nobody asked for: one that regions of coarser ones keep, or that limits those after it.
     void prepare(int step, const BSplineField& field);
     // The steps that make() or prepare() must have seen before this one, which is not among them; ascending.
     std::vector<int> stepsBefore(int step) const;

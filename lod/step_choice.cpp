@@ -26,9 +26,10 @@ void checkRanges(const LevelOptions& options) {
 
 namespace lod {
 
-StepChoice::StepChoice(const LevelOptions& options, bool budgets, const StepOrder& order)
+StepChoice::StepChoice(const LevelOptions& options, bool budgets, bool levelsLimit, const StepOrder& order)
     : levels_(!budgets || options.levels || options.steps),
       all_(budgets),
+      levelsLimit_(levelsLimit),
       steps_(options.steps.has_value()),
       order_(order) {
     checkRanges(options);
