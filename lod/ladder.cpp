@@ -304,9 +304,9 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
                             lod::truthOf(solid), progress, clock);
     if (!options.fine.empty() && !state.order.levelOf(step))
         throw UsageError(fmt::format("--fine needs a level: step {} is between two", step));
+    const BSplineField field = lod::fieldAtStep(solid, step, progress, clock);
     for (const int before : mesher.stepsBefore(step))
         mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));
-    const BSplineField field = lod::fieldAtStep(std::move(solid), step, progress, clock);
     lod::LevelMesh made = mesher.make(step, field);
     if (made.mesh.triangles.empty())
         throw InputError(name,

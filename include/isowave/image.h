@@ -95,9 +95,9 @@ struct ImageReadOptions {
     // Which stack of a DICOM folder or file, from 1 on, as the message about several lists them: frames of one series,
     // size, orientation and spacing. Of a segmentation: its how-manieth segment, alone.
     std::optional<std::int64_t> stack = {};
-    // Which channel of a TIFF of several, from 1 on.
+    // Which channel of a TIFF or OME-Zarr of several, from 1 on.
     std::optional<std::int64_t> channel = {};
-    // Which of several volumes that lie at one place (times, echoes) in DICOM or TIFF, from 1 on.
+    // Which of several volumes that lie at one place (times, echoes) in DICOM, TIFF or OME-Zarr, from 1 on.
     std::optional<std::int64_t> time = {};
     // DICOM slices in uneven steps along a line are interpolated, linearly, to even ones; without it they are refused.
     bool resampleSlices = false;
@@ -106,7 +106,7 @@ struct ImageReadOptions {
     std::int64_t memoryLimit = 0;
 };
 
-// Reads NIfTI, NRRD, MetaImage, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
+// Reads NIfTI, NRRD, MetaImage, OME-Zarr, a folder of DICOM or TIFF or PNG slices, a multi-page TIFF, a multi-frame
 // DICOM, or (when options.raw is given) a headerless file. Throws InputError, one line, for: missing, empty or truncated
 // file, 2D image, several volumes of which none is chosen, RGB or vector voxels, voxels not finite (says where), spacing
 // <= 0, a direction matrix that cannot be inverted, several series or stacks (lists them), slices that do not lie on one

@@ -1,4 +1,8 @@
 // What a level's mesh is made like, and what is told about it: the iso-value, specks, topology, features, sampling.
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include "tests/lod/solids.h"
 #include "tests/zoo/zoo.h"
 #include "tools/report/level_story.h"
@@ -288,6 +292,47 @@ TEST(Levels, WithNothingThinAreThePlainOnes) {
         EXPECT_FALSE(held.levels[i].report.hold);
         EXPECT_EQ(held.levels[i].mesh.points, plain.levels[i].mesh.points) << i;
         EXPECT_EQ(held.levels[i].mesh.triangles, plain.levels[i].mesh.triangles) << i;
+    }
+}
+
+// Sums of cosines: holes, necks and cavities of many sizes, with 3 voxels of background around them.
+Image waves(std::uint64_t seed) {
+    constexpr int kSide = 40, kWaves = 24, kBackground = 3;
+    std::uint64_t state = seed * 2654435761u + 12345;
+    const auto next = [&] {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(state >> 33) / (1u << 31);
+    };
+    struct Wave {
+        std::array<int, 3> k;
+        double phase;
+    };
+    std::vector<Wave> all(kWaves);
+    for (Wave& w : all) {
+        for (int& k : w.k) k = static_cast<int>(next() * 9) - 4;
+        w.phase = next() * 2 * std::numbers::pi;
+    }
+    return imageOf({kSide, kSide, kSide}, [&](int x, int y, int z) {
+        for (const int c : {x, y, z})
+            if (std::min(c, kSide - 1 - c) < kBackground) return -5.0;
+        double sum = 0;
+        for (const Wave& w : all)
+            sum += std::cos(2 * std::numbers::pi * (w.k[0] * x + w.k[1] * y + w.k[2] * z) / kSide + w.phase);
+        return sum;
+    });
+}
+
+// Level 1 limits level 2, be it asked for or not. Of each of these solids, limited by level 0 alone it is another mesh.
+TEST(Levels, AreTheSameWhateverIsAskedForBesideThem) {
+    for (const std::uint64_t seed : {0u, 1u, 2u, 3u}) {
+        const auto solid = [&] { return open(waves(seed), {.iso = 1}); };
+        const Level all = makeLadder(solid(), {.levels = StepRange{0, 2}}).levels.at(2),
+                    alone = makeLadder(solid(), {.levels = StepRange{2, 2}}).levels.at(0),
+                    mesh = makeLevel(solid(), 6);
+        EXPECT_EQ(alone.mesh.points, all.mesh.points) << seed;
+        EXPECT_EQ(alone.mesh.triangles, all.mesh.triangles) << seed;
+        EXPECT_EQ(mesh.mesh.points, all.mesh.points) << seed;
+        EXPECT_EQ(mesh.mesh.triangles, all.mesh.triangles) << seed;
     }
 }
 
