@@ -7,6 +7,7 @@
 #include "tools/console.h"
 #include "tools/option_values.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 
 namespace isowave::tools {
 namespace {
@@ -104,17 +105,17 @@ void Command::openJson() {
 void Command::readyToTell(Console& console, const std::string& json) {
     console.progress().check();
     openJson();
-    if (jsonFile_) writeWhole(*jsonFile_, json);
-    readyToTell_ = true;
+    report_ = withRemarks(json, console.remarks());
+    if (jsonFile_) writeWhole(*jsonFile_, *report_);
 }
 
 void Command::tell(Console& console, const std::string& text, const std::string& json) {
-    if (!readyToTell_) readyToTell(console, json);
+    if (!report_) readyToTell(console, json);
     if (jsonFile_) {
         jsonFile_->commit();
         jsonFolders_->commit();
     }
-    console.print(jsonToStandardOutput() ? json : text);
+    console.print(jsonToStandardOutput() ? *report_ : text);
 }
 
 void Command::declareThreads() {

@@ -105,7 +105,7 @@ class Command {
     Description description_;
     std::optional<OutputFile> jsonFolders_;
     std::optional<AtomicFile> jsonFile_;
-    bool readyToTell_ = false;
+    std::optional<std::string> report_;  // as it is told, once it is ready
 
   protected:
     OptionList options_;

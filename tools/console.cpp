@@ -63,6 +63,7 @@ void Console::flush() {
 }
 
 void Console::say(std::string_view line) {
+    remarks_.emplace_back(line);
     if (talk_.quiet) return;
     waiting_ += fmt::format("isowave: {}\n", line);
     if (terminal_) showRemarks();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "isowave/progress.h"
 #include "tools/overall.h"
@@ -33,6 +34,8 @@ class Console {
     // A remark (a decision, a default that was taken), one line to standard error: at once on a terminal,
     // otherwise when finish() is called, so that a run that fails leaves exactly one line there, the reason.
     void say(std::string_view line);
+    // All of them so far, also those that --quiet keeps from being shown: for reports.
+    const std::vector<std::string>& remarks() const { return remarks_; }
     // Why a part of the work failed while the rest goes on, one line to standard error at once.
     void complain(std::string_view line);
     // The work is done: shows the remarks that waited and, with --verbose, seconds and memory by stage.
@@ -56,6 +59,7 @@ class Console {
     Talk talk_;
     bool terminal_;
     std::string waiting_;
+    std::vector<std::string> remarks_;
     std::mutex mutex_;
     Time begin_ = std::chrono::steady_clock::now();
     Overall overall_;

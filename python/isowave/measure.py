@@ -100,7 +100,8 @@ def check(
     False
     """
     watch = Watch(progress, threads)
-    return Check(json.loads(_native.check(_measured(mesh, faces, "mesh", watch), self_intersections, watch)))
+    report = json.loads(_native.check(_measured(mesh, faces, "mesh", watch), self_intersections, watch))
+    return Check({**report, "remarks": watch.remarks})
 
 
 class Distance:
@@ -157,4 +158,5 @@ def compare(
     """
     watch = Watch(progress, threads)
     first, second = _measured(a, None, "a", watch), _measured(b, None, "b", watch)
-    return Comparison(json.loads(_native.compare(first, second, sampling, watch)))
+    report = json.loads(_native.compare(first, second, sampling, watch))
+    return Comparison({**report, "remarks": watch.remarks})

@@ -80,7 +80,7 @@ class CurveLadder(Sequence[CurveLevel]):
         self._native = native
         self.remarks = remarks
         #: What ``isowave curves --json`` writes.
-        self.report: dict[str, Any] = json.loads(native.report())
+        self.report: dict[str, Any] = {**json.loads(native.report()), "remarks": list(remarks)}
         by_step = {step["step"]: step for step in self.report["steps"]}
         self._levels = [CurveLevel(self, i, by_step[native.step(i)]) for i in range(len(native))]
 

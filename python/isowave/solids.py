@@ -378,7 +378,7 @@ class Ladder(Sequence[Level]):
         #: Decisions and defaults that were taken, a line each; the logger "isowave" has them too.
         self.remarks = remarks
         #: What ``isowave lod`` writes as report.json; ``file`` is None until save() has given names.
-        self.report: dict[str, Any] = json.loads(native.report())
+        self.report: dict[str, Any] = {**json.loads(native.report()), "remarks": list(remarks)}
         count = native.level_count
         reports = self.report["levels"][:count] + self.report["budgets"]
         self._levels = [Level(self, i, report) for i, report in enumerate(reports)]
@@ -430,7 +430,7 @@ class Ladder(Sequence[Level]):
         level 0; OperationError where writing fails.
         """
         watch = Watch(progress, threads)
-        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), (colour or "").lower(), tiles or "", self._inputs, watch)
+        paths = self._native.save(os.fspath(folder), format, (space or "").lower(), (colour or "").lower(), tiles or "", self._inputs, self.remarks, watch)
         return [os.fspath(path) for path in paths]
 
     def _field(self, step: int) -> Field:

@@ -150,10 +150,12 @@ def subdivide(
 class Hierarchy:
     """A mesh taken apart: a coarse base, and the details that each subdivision needs to get the mesh back."""
 
-    def __init__(self, native: _native.Hierarchy) -> None:
+    def __init__(self, native: _native.Hierarchy, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave reverse --json`` writes; None for one that was loaded.
-        self.report: Optional[dict[str, Any]] = json.loads(native.report) if native.report else None
+        self.report: Optional[dict[str, Any]] = None
+        if native.report:
+            self.report = {**json.loads(native.report), "remarks": list(remarks)}
 
     @classmethod
     def load(cls, path: PathLike) -> Hierarchy:
@@ -260,4 +262,4 @@ def reverse(
         raise UsageError(f"--crease: '{crease}' is not between 0 and 180")
     if crease is not None and scheme != "catmull-clark":
         raise UsageError(f"--crease: belongs to --scheme catmull-clark; {scheme} has no creases")
-    return Hierarchy(_native.reverse(polygons, scheme, variant, _depth(depth, -1), crease, watch))
+    return Hierarchy(_native.reverse(polygons, scheme, variant, _depth(depth, -1), crease, watch), watch.remarks)

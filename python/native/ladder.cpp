@@ -10,6 +10,7 @@
 #include "python/native/options.h"
 #include "python/native/watch.h"
 #include "tools/output.h"
+#include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
@@ -119,7 +120,7 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
                                         const std::string& format, const std::string& space,
                                         const std::string& colour, const std::string& tiles,
                                         const std::vector<std::filesystem::path>& inputs,
-                                        const py::object& watch) {
+                                        const std::vector<std::string>& remarks, const py::object& watch) {
     const WriteChoice choice = choiceOf(made, format, space, colour);
     const tools::TileChoice tileChoice = tilesOf(made, tiles);
     return watched(watch, [&](const Progress& progress) {
@@ -143,7 +144,8 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
                 files.tiles = tileChoice.folderOf(out.name());
                 places.push_back(out.folder() / files.tiles);
             }
-            tools::writeFiles(out, {{"report.json", tools::jsonOf(made.ladder, files)}});
+            tools::writeFiles(
+                out, {{"report.json", tools::withRemarks(tools::jsonOf(made.ladder, files), remarks)}});
             progress.check();
             out.commit();
         } catch (const OperationError& error) {

@@ -34,7 +34,7 @@ TEST(Check, FindsNothingWrongWithATorus) {
               (std::set<std::string>{"version", "input", "vertices", "triangles", "components", "genus",
                                      "closed", "manifold", "volume", "area", "oriented", "boundary_edges",
                                      "non_manifold_edges", "non_manifold_vertices", "misoriented_edges",
-                                     "degenerate_triangles", "self_intersections", "each"}));
+                                     "degenerate_triangles", "self_intersections", "each", "remarks"}));
     EXPECT_EQ(json["genus"], 1);
     EXPECT_EQ(json["components"], 1);
     EXPECT_EQ(json["closed"], true);

@@ -66,7 +66,8 @@ TEST_F(BallLadder, ReportsTheDocumentedKeys) {
     const Json r = report();
     EXPECT_EQ(keysOf(r), (std::set<std::string>{"version", "input", "fit", "K", "first_levels", "levels",
                                                 "budgets", "steps", "coefficients_stored", "control_points",
-                                                "seconds", "peak_memory_bytes", "threads"}));
+                                                "seconds", "peak_memory_bytes", "threads", "remarks"}));
+    EXPECT_FALSE(r["remarks"].empty()) << "the image, and how thick its walls are";
     EXPECT_EQ(keysOf(r["input"]), (std::set<std::string>{"path", "kind", "format", "component_type",
                                                          "dimensions", "spacing", "range", "iso", "inverted",
                                                          "open_border", "origin", "direction", "space"}));

@@ -15,6 +15,7 @@
 #include "tools/option_values.h"
 #include "tools/output.h"
 #include "tools/report/curves.h"
+#include "tools/report/json.h"
 
 namespace isowave::tools {
 namespace {
@@ -194,8 +195,7 @@ CurvesReport CurvesCommand::climb(OutputFolder& out, ResultFile* pyramid, Consol
 }
 
 void CurvesCommand::tellAll(const CurvesReport& report, const OutputFolder& out, Console& console) const {
-    if (curves_.draw.smooth) console.say(smoothRemark(report));
-    if (jsonToStandardOutput()) return console.print(jsonOf(report));
+    if (jsonToStandardOutput()) return console.print(withRemarks(jsonOf(report), console.remarks()));
     if (table_) console.print(table(report));
     console.print(summary(report, out.folder().string()));
 }
@@ -218,7 +218,8 @@ int CurvesCommand::run(Console& console) {
     // What can fail for want of room comes first; then only names change.
     if (draw_.sheet) sheet.emplace(*draw_.sheet);
     if (sheet) sheet->write(sheetText);
-    if (copy) copy->write(jsonOf(report));
+    if (curves_.draw.smooth) console.say(smoothRemark(report));
+    if (copy) copy->write(withRemarks(jsonOf(report), console.remarks()));
     out.commit();
     for (auto* beside : {&sheet, &pyramid, &copy})
         if (*beside) (*beside)->commit();

@@ -170,11 +170,11 @@ PartStory storyOf(const Made& made, const OutputFolder& out) {
 
 // What can fail for want of room comes first; then only names change.
 void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
-    const std::string json = jsonOf(made.ladder, made.files);
+    tellOfWhatIsLeft(out, made.files, console.progress());
+    const std::string json = withRemarks(jsonOf(made.ladder, made.files), console.remarks());
     writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    tellOfWhatIsLeft(out, made.files, console.progress());
     console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
     console.flush();
     out.commit();
@@ -394,10 +394,16 @@ PartStory Lod::runPart(const Part& part, const Progress& progress) const {
     const MeshNames names = namesIn(out);
     refuseTaken(names, out);
     try {
-        const Made made = make(part.input, names, out, progress);
-        writeReport(jsonOf(made.ladder, made.files), out);
+        std::vector<std::string> remarks;
+        Progress watched = progress;
+        watched.remark = [&](std::string_view line) {
+            remarks.emplace_back(line);
+            progress.say(line);
+        };
+        const Made made = make(part.input, names, out, watched);
+        tellOfWhatIsLeft(out, made.files, watched);
+        writeReport(withRemarks(jsonOf(made.ladder, made.files), remarks), out);
         progress.check();
-        tellOfWhatIsLeft(out, made.files, progress);
         const PartStory story = storyOf(made, out);
         out.commit();
         return story;

@@ -124,10 +124,10 @@ int CurveLevels::run(Console& console) {
     const CurveReport report = reported(file);
     writeFiles(out, filesOf(report, file, arguments[0].extension().string()));
     if (details) details->write(report.details);
+    for (const auto& remark : remarks(report)) console.say(remark);
     readyToTell(console, jsonOf(report));
     out.commit();
     if (details) details->commit();
-    for (const auto& remark : remarks(report)) console.say(remark);
     tell(console, textOf(report), jsonOf(report));
     return 0;
 }

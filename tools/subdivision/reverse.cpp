@@ -127,13 +127,13 @@ int Reverse::run(Console& console) {
     DecompositionReport report = reportDecomposition(hierarchy, mesh, console.progress());
     report.positions = positionsOf(limit_);
     if (threshold_ || keep_) dropDetails(hierarchy, mesh, threshold_, keep_, report, console.progress());
-    readyToTell(console, jsonOf(report));
-    write(hierarchy);
     if (report.roundTrip > kMeshRoundTrip * report.diagonal)
         console.say("the mesh comes back to " + std::to_string(report.roundTrip / report.diagonal) +
                     " of its diagonal only");
     if (!details_ && hierarchy.steps() > 0)
         console.say("the details are not kept; --details FILE writes them");
+    readyToTell(console, jsonOf(report));
+    write(hierarchy);
     tell(console, textOf(report), jsonOf(report));
     return 0;
 }
