@@ -541,6 +541,16 @@ TEST_P(TileFolder, IsNotMadeWithoutTrianglesOrWhenStopped) {
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST_P(TileFolder, IsNotMadeOfVoxelsThatAreNoLengthOrBeyondCounting) {
+    const TempFolder folder;
+    for (const double voxel : {0.0, -1.0, std::nan(""), HUGE_VAL, 1e-12}) {
+        Ladder3 ladder = ring(Vec3d(0));
+        ladder.levels.front().voxel = voxel;
+        EXPECT_THROW(writeTiles(folder / "tiles", ladder.levels, GetParam()), InputError) << voxel;
+    }
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 INSTANTIATE_TEST_SUITE_P(Both, TileFolder, ::testing::Values(TileFormat::neuroglancer, TileFormat::tiles3d),
                          [](const auto& with) {
                              return with.param == TileFormat::neuroglancer ? "neuroglancer" : "tiles3d";
