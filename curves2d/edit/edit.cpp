@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curves2d/file/row_coding.h"
 #include "curves2d/raster.h"
 #include "curves2d/three_rows.h"
 #include "isowave/error.h"
@@ -49,6 +50,20 @@ double reachBeyond(const RowField<float>& field, const std::vector<Polygon>& pol
                     most = std::max({most, box.first[axis] - p[axis], p[axis] - box.last[axis]});
             }
     return most;
+}
+
+// Rows between the first and the last one take memory, be they known or not.
+constexpr std::int64_t kMostRows = 1 << 25;
+
+void requireFewRows(const RowField<float>& field, const RowField<float>& tool) {
+    const Bounds a = field.bounds(), b = tool.bounds();
+    const std::int64_t rows =
+        std::int64_t{std::max(a.last[1], b.last[1])} - std::min(a.first[1], b.first[1]) + 1;
+    if (rows > kMostRows)
+        throw InputError(
+            fmt::format("the shape and the polygons reach over {} rows of pixels, and {} are "
+                        "taken at most; make curves of larger pixels",
+                        rows, kMostRows));
 }
 
 RowField<float> toolOnLattice(const Fitted& fitted, const PolygonEdit& edit, const Progress& progress) {
@@ -243,20 +258,29 @@ RowField<float> fieldOf(const RowField<float>& old, const Values& values, const 
 // ---- origin ----
 
 // 0, or what brings control points from `low` to -1 or above, of a lattice whose domain ends at `high`.
-std::int32_t shiftFor(std::int32_t low, std::int32_t high) {
+std::int64_t shiftFor(std::int64_t low, std::int64_t high) {
     if (low >= -1) return 0;
-    std::int32_t unit = 1;
+    std::int64_t unit = 1;
     while (unit < high - low + 1) unit *= 2;
     return unit;
 }
 
 RowField<float> atOrigin(RowField<float> field) {
     const Bounds box = field.bounds();
-    const std::int32_t dx = shiftFor(box.first[0], box.last[0]), dy = shiftFor(box.first[1], box.last[1]);
-    if (dx == 0 && dy == 0) return field;
+    std::int32_t shift[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        const std::int64_t unit = shiftFor(box.first[axis], box.last[axis]);
+        if (box.last[axis] + unit > kMostPosition)
+            throw InputError(
+                fmt::format("the shape would reach to pixel {}, and {} is the last one of the "
+                            "lattice; make curves of larger pixels",
+                            box.last[axis] + unit, kMostPosition));
+        shift[axis] = static_cast<std::int32_t>(unit);
+    }
+    if (shift[0] == 0 && shift[1] == 0) return field;
     Frame frame = field.frame;
-    frame.origin = frame.toWorld({-static_cast<double>(dx), -static_cast<double>(dy)});
-    return shifted(field, dx, dy, frame);
+    frame.origin = frame.toWorld({-static_cast<double>(shift[0]), -static_cast<double>(shift[1])});
+    return shifted(field, shift[0], shift[1], frame);
 }
 
 }  // namespace
@@ -264,6 +288,7 @@ RowField<float> atOrigin(RowField<float> field) {
 std::optional<Fitted> editedFit(const Fitted& fitted, const PolygonEdit& edit, const Progress& progress) {
     const RowField<float>& field = fitted.field;
     const RowField<float> tool = toolOnLattice(fitted, edit, progress);
+    requireFewRows(field, tool);
     const Region knownOfField = knownRegion(field), knownOfTool = knownRegion(tool);
     const Values values = Combination(field, tool, edit).on(dilated(unite(knownOfField, knownOfTool), 1, 1));
     if (values.inside.empty()) throw InputError("takes away all that there is; nothing would be left");

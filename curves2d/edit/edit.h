@@ -21,7 +21,7 @@
 namespace isowave::curves2d {
 
 // Nothing where no value changes. REQUIRES: rows along x. Throws InputError, without a name: the tool covers no pixel's middle
-// at its level or reaches far away, nothing would be left.
+// at its level or reaches far away, nothing would be left, shape and tool take more rows or positions than there can be.
 std::optional<Fitted> editedFit(const Fitted& fitted, const PolygonEdit& edit, const Progress& progress = {});
 
 }  // namespace isowave::curves2d

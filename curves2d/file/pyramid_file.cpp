@@ -20,6 +20,8 @@ constexpr SectionFormat kFormat{"ISOWAVEC", 1, "pyramid of curves",
 constexpr std::uint32_t kHead = 1, kRows = 2, kPredicted = 3, kPlain = 4;
 // Of K: far beyond what a fit makes, far below what overflows.
 constexpr double kLargestValue = 1e6;
+// In pixels, of the distance fit, which an edit repeats: so far from its boundary there is nothing that could be told apart.
+constexpr double kWidest = 1 << 22;
 
 void require(bool holds) {
     if (!holds) throw std::runtime_error("its head makes no sense; the file is damaged");
@@ -133,6 +135,7 @@ Head headOf(std::string_view bytes) {
     head.fitted.method = flag(reader) ? Fit::distance : Fit::binary;
     head.fitted.halfWidth = positive(reader);
     head.fitted.band = positive(reader);
+    require(head.fitted.band <= head.fitted.halfWidth && head.fitted.halfWidth <= kWidest);
     head.fitted.report = reportOf(reader);
     require(reader.atEnd());
     return head;

@@ -5,8 +5,8 @@
 // smaller; all but the head are zlib streams of what row_coding.h says. The head:
 //   f64 K; 4 f64 origin x, y and spacing x, y of the lattice; u64 length of the rows, inflated; u64 control points
 //   4 f64 extent of the input, low x, y and high x, y; u32 1 where y points up; text the input's kind; f64 pixel
-//   u32 fit, 0 binary, 1 distance; f64 half-width, f64 band; u64 lattice points, u64 disagreeing, u32 repair passes,
-//   u32 1 where the repair agreed, f64 its floor, u64 repaired
+//   u32 fit, 0 binary, 1 distance; f64 half-width, f64 band, in pixels, 0 < band <= half-width <= 2^22; u64 lattice points,
+//   u64 disagreeing, u32 repair passes, u32 1 where the repair agreed, f64 its floor, u64 repaired
 #pragma once
 
 #include <filesystem>

@@ -183,5 +183,46 @@ TEST(PlaneEdit, RefusesWhatChangesNothingOrLeavesNothing) {
                 HasSubstr("no pixel's middle of level 5"));
 }
 
+// The shape once more, so many pixels away.
+Input twice(const Input& input, std::int32_t dx, std::int32_t dy) {
+    Fitted fitted = *input.fitted;
+    const RowField<float> once = fitted.field;
+    for (const auto& [y, row] : once.rows) {
+        Row<float> copy = row;
+        for (KnownRun& run : copy.runs) run = {run.first + dx, run.last + dx, run.insideAfter};
+        Row<float>& to = fitted.field.rows[y + dy];
+        to.runs.insert(to.runs.end(), copy.runs.begin(), copy.runs.end());
+        to.values.insert(to.values.end(), copy.values.begin(), copy.values.end());
+    }
+    Input both = input;
+    both.fitted = std::make_shared<const Fitted>(std::move(fitted));
+    return both;
+}
+
+std::string refusalOf(const Input& input, const Polygon& tool) {
+    try {
+        edited(input, {false, {tool}, 0});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// Below -1 the lattice moves by more than its width, which must end where positions do.
+TEST(PlaneEdit, RefusesALatticeThatWouldNotHoldTheShape) {
+    const Input one = round();
+    const Polygon beside = rectangle(-80, -10, -60, 10);
+    const Point corner = one.fitted->field.frame.toLattice({-80, 0});
+    ASSERT_LT(corner.x, -8);
+    EXPECT_EQ(refusalOf(twice(one, 1 << 28, 0), beside), "");
+    for (const std::int32_t far : {1 << 29, (1 << 30) - 1000})
+        EXPECT_THAT(refusalOf(twice(one, far, 0), beside), HasSubstr("last one of the lattice")) << far;
+}
+
+TEST(PlaneEdit, RefusesMoreRowsThanFitIntoMemory) {
+    EXPECT_THAT(refusalOf(twice(round(), 0, 1 << 29), rectangle(60, 5, 84.5, 31.25)),
+                HasSubstr("rows of pixels, and 33554432 are taken at most"));
+}
+
 }  // namespace
 }  // namespace isowave::curves2d

@@ -201,6 +201,24 @@ TEST(PlanePyramidFile, RefusesOrClimbsOtherBytesUnderRightChecksums) {
     EXPECT_GT(climbed, 300);
 }
 
+// An edit fits its polygons with both, and the nodes that it makes reach as far.
+TEST(PlanePyramidFile, RefusesABandThatIsWiderThanTheHalfWidthOrThanAnyShape) {
+    std::vector<Section> sections = sectionsOf(kFormat, small());
+    const auto with = [&](double halfWidth, double band) {
+        constexpr std::size_t kBehind = 40;  // bytes of the head, the report
+        ByteWriter both;
+        both.f64(halfWidth);
+        both.f64(band);
+        std::string& head = sections[0].content;
+        head.replace(head.size() - kBehind - 16, 16, both.str());
+        return messageOf(fileOf(kFormat, sections));
+    };
+    EXPECT_EQ(with(4, 2), "");
+    EXPECT_EQ(with(4, 4), "");
+    EXPECT_THAT(with(4, 4.5), HasSubstr("head makes no sense"));
+    EXPECT_THAT(with(1e300, 1e299), HasSubstr("head makes no sense"));
+}
+
 TEST(PlanePyramidFile, SaysWhatIsWrong) {
     EXPECT_THAT(messageOf("solid x"), HasSubstr("a.iwc: is no pyramid of curves: it does not begin with"));
     std::string other = small();

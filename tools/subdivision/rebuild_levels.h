@@ -12,7 +12,7 @@ namespace isowave::tools {
 
 // What a file of details belongs to, by its first bytes.
 enum class DetailsOf { meshes, curves, heights };
-// Meshes also where it is no file of details: their reader says so. Throws InputError: no such file.
+// Meshes also where it is no file of details, or cannot be read: their reader says so.
 DetailsOf detailsOf(const std::filesystem::path& path);
 
 struct LevelsRebuild {

@@ -173,7 +173,8 @@ ZarrArray readZarrArray(const fs::path& folder) {
     array.separator = separator == "/" ? '/' : '.';
     const std::int64_t bytes =
         byteCount((folder / ".zarray").string(), array.chunk, static_cast<std::int64_t>(sizeOf(array.type)));
-    if (static_cast<double>(bytes) > usualMemoryLimit()) keys.refuse("chunks", "chunks that fit into memory");
+    if (2 * static_cast<double>(bytes) > usualMemoryLimit())  // packed and unpacked
+        keys.refuse("chunks", "chunks that fit into memory");
     return array;
 }
 

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
+#include <string_view>
 
+#include "base/peak_memory.h"
 #include "io/image/check.h"
 #include "io/image/formats/stored_volume.h"
 #include "io/image/zarr/array.h"
@@ -46,21 +50,55 @@ class VolumeChunks {
         for (std::size_t a = 0; a < 3; ++a) numbers[volume_.axis[a]] = at[a];
         return numbers;
     }
-    std::int64_t missing() const {
-        std::int64_t missing = 0;
-        std::error_code ignored;
-        for (std::int64_t z = 0; z < count(2); ++z)
-            for (std::int64_t y = 0; y < count(1); ++y)
-                for (std::int64_t x = 0; x < count(0); ++x)
-                    missing += !fs::exists(array_.fileOf(numbersOf({x, y, z})), ignored);
-        return missing;
-    }
+    // Chunks that are there. What the folder holds is counted, for its shape may promise any number of them.
+    std::int64_t present() const { return presentIn(array_.folder, 0); }
 
   private:
+    // Of a folder whose path has the first `known` numbers of a chunk: all of them are in a file's name, or one is in a folder's.
+    std::int64_t presentIn(const fs::path& folder, std::size_t known) const {
+        std::int64_t count = 0;
+        std::error_code ignored;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            const std::size_t now = known + numbersIn(entry.path().filename().string(), known);
+            if (now == array_.axes())
+                ++count;
+            else if (now == known + 1 && array_.separator == '/' && entry.is_directory(ignored))
+                count += presentIn(entry.path(), now);
+        }
+        return count;
+    }
+    // How many numbers a name holds, from this axis on; 0 where it is of no chunk of the volume.
+    std::size_t numbersIn(std::string_view name, std::size_t axis) const {
+        std::size_t count = 0;
+        for (std::size_t begin = 0; begin <= name.size(); ++count) {
+            const std::size_t end = std::min(name.find(array_.separator, begin), name.size());
+            if (axis + count == array_.axes() || !isChunkOn(axis + count, name.substr(begin, end - begin)))
+                return 0;
+            begin = end + 1;
+        }
+        return count;
+    }
+    bool isChunkOn(std::size_t axis, std::string_view text) const {
+        std::int64_t number = 0;
+        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (parsed.ec != std::errc() || std::to_string(number) != text) return false;
+        const auto& along = volume_.axis;
+        if (std::find(along.begin(), along.end(), axis) == along.end())
+            return number == volume_.index[axis] / array_.chunk[axis];
+        return 0 <= number && number < array_.chunksAlong(axis);
+    }
+
     ZarrArray array_;
     Volume volume_;
     std::vector<std::int64_t> strides_, first_;
 };
+
+// Each unpacks a chunk, which may hold other times and channels, too: as many as fit into memory, packed and unpacked.
+int threadsFor(std::int64_t chunkBytes) {
+    const double fit = usualMemoryLimit() / (2 * static_cast<double>(chunkBytes));
+    return static_cast<int>(
+        std::clamp(fit, 1.0, static_cast<double>(tbb::this_task_arena::max_concurrency())));
+}
 
 class ZarrSource : public VoxelSource {
   public:
@@ -68,14 +106,18 @@ class ZarrSource : public VoxelSource {
         header = std::move(from);
         native = true;
         slicesPerRead = std::min(chunks_.chunk(2), header.size[2]);
+        threads_ = threadsFor(chunks_.array().chunkBytes());
     }
 
     // By layers of chunks; a layer's chunks go to different voxels, so threads do not meet.
     void readNative(std::int64_t z0, std::int64_t z1, void* out) override {
         const std::int64_t columns = chunks_.count(0), rows = chunks_.count(1);
+        tbb::task_arena arena(threads_);
         for (std::int64_t layer = z0 / chunks_.chunk(2); layer * chunks_.chunk(2) < z1; ++layer)
-            tbb::parallel_for(std::int64_t{0}, columns * rows, [&](std::int64_t i) {
-                put({i % columns, i / columns, layer}, z0, z1, static_cast<char*>(out));
+            arena.execute([&] {
+                tbb::parallel_for(std::int64_t{0}, columns * rows, [&](std::int64_t i) {
+                    put({i % columns, i / columns, layer}, z0, z1, static_cast<char*>(out));
+                });
             });
     }
 
@@ -108,6 +150,7 @@ class ZarrSource : public VoxelSource {
     }
 
     VolumeChunks chunks_;
+    int threads_ = 1;
 };
 
 // Of an axis of times or channels.
@@ -229,6 +272,8 @@ SourcePtr openZarr(const fs::path& path, const ImageReadOptions& options) {
     const std::vector<ZarrAxis> axes = axesOf(name, array, choice, header);
     const Volume volume = volumeOf(name, array, axes, options);
     for (std::size_t a = 0; a < 3; ++a) header.size[a] = array.shape[volume.axis[a]];
+    byteCount(name, {header.size[0], header.size[1], header.size[2]},
+              static_cast<std::int64_t>(sizeOf(array.type)));
     placeZarr(name, volume, axes, choice, header);
     if (!choice.others.empty() && choice.array != path)
         header.warnings.push_back(
@@ -236,7 +281,8 @@ SourcePtr openZarr(const fs::path& path, const ImageReadOptions& options) {
                         choice.array.lexically_relative(path).string(), oneLine(choice.others),
                         (path / choice.others.substr(0, choice.others.find(','))).string()));
     const VolumeChunks chunks(std::move(array), volume);
-    const std::int64_t all = chunks.count(0) * chunks.count(1) * chunks.count(2), missing = chunks.missing();
+    const std::int64_t all = chunks.count(0) * chunks.count(1) * chunks.count(2),
+                       missing = all - chunks.present();
     if (missing == all)
         throw InputError(name, fmt::format("has none of its {} chunks; copy the store again", all));
     if (missing > 0)

@@ -1,8 +1,18 @@
 #include "io/mesh/tiles/grid.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "isowave/error.h"
+
 namespace isowave {
+namespace {
+
+constexpr std::int64_t kMostVoxels = std::int64_t{1} << 31;  // as of images: tiles are counted with 32 bits
+
+}  // namespace
 
 double TileGrid::side(int level) const { return std::ldexp(chunk, level); }
 
@@ -20,6 +30,13 @@ LatticePoint TileGrid::latticePointOf(const Point& p, int level, std::int64_t un
 }
 
 TileGrid gridAround(const PointBox& box, double voxel) {
+    const double most =
+        std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+    if (!(voxel > 0 && std::isfinite(voxel) && most / voxel <= static_cast<double>(kMostVoxels)))
+        throw InputError(
+            "tiles",
+            fmt::format("a voxel of {:.6g} and a solid that is {:.6g} wide; expected {} voxels at most",
+                        voxel, most, kMostVoxels));
     int exponent = 0;
     std::frexp(kVoxelsOfTile * voxel, &exponent);  // 2^(exponent - 1) <= that < 2^exponent
     TileGrid grid;

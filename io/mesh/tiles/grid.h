@@ -33,6 +33,7 @@ struct TileGrid {
 inline constexpr double kVoxelsOfTile = 64;
 
 // For a mesh whose finest level has this box. Coarser levels bulge: a quarter of a tile at the low side is left for them.
+// Throws InputError for a voxel that is no length, or more than 2^31 of them along the box.
 TileGrid gridAround(const PointBox& box, double voxel);
 
 // The planes of one axis that no triangle crosses. In lattice points, numbered upwards, 0 at 0: the borders of tiles, and with

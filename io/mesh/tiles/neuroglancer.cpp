@@ -84,8 +84,7 @@ std::string NeuroglancerTiles::manifest() const {
         const double corner = grid_->corner[a] - static_cast<double>(shift) * grid_->chunk;
         if (static_cast<float>(corner) != corner)
             throw OperationError(
-                folder_.string(),
-                "the solid is too far from the origin for neuroglancer's float32; move it nearer");
+                "tiles", "the solid is too far from the origin for neuroglancer's float32; move it nearer");
         append(bytes, static_cast<float>(corner));
     }
     append(bytes, static_cast<std::uint32_t>(levels_.size()));
@@ -112,7 +111,7 @@ std::string NeuroglancerTiles::info() const {
 
 void NeuroglancerTiles::finish() {
     data_.close();
-    if (!grid_) throw InputError(folder_.string(), "no level has a triangle; nothing to write");
+    if (!grid_) throw InputError("tiles", "no level has a triangle; nothing to write");
     completeTree();
     writeTileFile(folder_ / (std::to_string(options_.segment) + ".index"), manifest());
     writeTileFile(folder_ / "info", info());

@@ -38,6 +38,12 @@ std::string uriOf(int level, const TileIndex& at) {
            std::to_string(at[2]) + ".glb";
 }
 
+void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::create_directory(folder, error))
+        throw OperationError(folder.string(), "cannot make this folder (" + error.message() + ")");
+}
+
 }  // namespace
 
 Tiles3d::Tiles3d(const fs::path& folder, const TileOptions& options) : folder_(folder), options_(options) {}
@@ -54,7 +60,7 @@ void Tiles3d::add(const TriangleMesh& mesh, double voxel, double error, const Pr
     for (const Point& p : placed.points) points.push_back(grid_->latticePointOf(p, level, kUnits));
     const ClippedMesh clipped =
         clipToPlanes(std::move(points), std::move(placed.normals), placed.triangles, kPlanes);
-    fs::create_directory(folder_ / ("L" + std::to_string(level)));
+    makeFolder(folder_ / ("L" + std::to_string(level)));
     for (const TileTriangles& tile : tilesOf(clipped, kPlanes)) {
         progress.check();
         const std::string uri = uriOf(level, tile.tile);
@@ -152,7 +158,7 @@ json Tiles3d::tileOf(int level, const TileIndex& at) const {
 }
 
 void Tiles3d::finish() {
-    if (!grid_) throw InputError(folder_.string(), "no level has a triangle; nothing to write");
+    if (!grid_) throw InputError("tiles", "no level has a triangle; nothing to write");
     countFromZero();
     completeTree();
     const auto top = static_cast<int>(levels_.size()) - 1;

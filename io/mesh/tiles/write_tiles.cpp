@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "io/mesh/tiles/neuroglancer.h"
 #include "io/mesh/tiles/tiles_3d.h"
 #include "isowave/error.h"
@@ -45,6 +48,26 @@ class FolderOnItsWay {
     fs::path place_, hidden_;
 };
 
+constexpr const char* kMultilod = "neuroglancer_multilod_draco";
+
+std::string bytesUpTo(const fs::path& file, std::streamsize most) {
+    std::string bytes(static_cast<std::size_t>(most), '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(bytes.data(), most);
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return bytes;
+}
+
+// tileset.json, L0, L1, ...; info, 7, 7.index.
+bool isOfTiles(std::string name) {
+    if (name == "tileset.json" || name == "info") return true;
+    if (name.starts_with('L'))
+        name.erase(0, 1);
+    else if (name.ends_with(".index"))
+        name.resize(name.size() - std::string(".index").size());
+    return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
 }  // namespace
 
 std::unique_ptr<TileWriter> makeTileWriter(const fs::path& folder, TileFormat format,
@@ -59,15 +82,23 @@ std::unique_ptr<TileWriter> makeTileWriter(const fs::path& folder, TileFormat fo
 }
 
 bool mayBecomeTiles(const fs::path& folder) {
-    std::error_code ignored;
-    return fs::is_empty(folder, ignored) || fs::is_regular_file(folder / "tileset.json", ignored) ||
-           fs::is_regular_file(folder / "info", ignored);
+    std::error_code error;
+    if (fs::is_empty(folder, error)) return true;
+    const bool isMarked = fs::is_regular_file(folder / "tileset.json", error) ||
+                          bytesUpTo(folder / "info", 4096).find(kMultilod) != std::string::npos;
+    fs::directory_iterator entries(folder, error);
+    if (!isMarked || error) return false;
+    return std::all_of(fs::begin(entries), fs::end(entries), [](const fs::directory_entry& entry) {
+        return isOfTiles(entry.path().filename().string());
+    });
 }
 
 void writeTiles(const fs::path& folder, std::span<const TileLevel> levels, TileFormat format,
                 const TileOptions& options, const Progress& progress) {
-    if (fs::exists(folder) && (!fs::is_directory(folder) || !mayBecomeTiles(folder)))
-        throw OperationError(folder.string(), "is there and holds no tiles; move it away");
+    std::error_code ignored;
+    if (fs::exists(folder, ignored) && (!fs::is_directory(folder, ignored) || !mayBecomeTiles(folder)))
+        throw OperationError(folder.string(),
+                             "is there and is or holds something else than tiles; move it away");
     FolderOnItsWay way(folder);
     const auto writer = makeTileWriter(way.hidden(), format, options);
     for (const TileLevel& level : levels) writer->add(level.mesh, level.voxel, level.error, progress);

@@ -13,7 +13,7 @@ namespace isowave {
 std::unique_ptr<TileWriter> makeTileWriter(const std::filesystem::path& folder, TileFormat format,
                                            const TileOptions& options);
 
-// Whether a folder is what a TileWriter has made, or empty: what may be replaced.
+// Whether a folder is what a TileWriter has made, or empty: what may be replaced. One that holds anything else, too, is not.
 bool mayBecomeTiles(const std::filesystem::path& folder);
 
 }  // namespace isowave

@@ -219,6 +219,49 @@ TEST(Zarr, WrongKeysAreNamedWithWhatWasExpected) {
     }
 }
 
+// A shape is a few bytes, and the chunks that it promises may be more than can be looked for.
+TEST(Zarr, AShapeOfAnySizeIsAnsweredAtOnce) {
+    const test::TempFolder folder;
+    json array = smallArray();
+    array["chunks"] = {1, 1, 1};
+    const std::int64_t most = std::int64_t{1} << 40, many = 1 << 20;
+    array["shape"] = {most, most, most};
+    putSmall(folder / "a.zarr", array);
+    EXPECT_THAT(refusal(folder / "a.zarr"), HasSubstr("more than can be addressed"));
+    array["shape"] = {many, many, many};
+    putSmall(folder / "a.zarr", array);
+    EXPECT_THAT(refusal(folder / "a.zarr"), HasSubstr("more than the limit"));
+    fs::remove(folder / "a.zarr/0.0.0");
+    fs::remove(folder / "a.zarr/1.0.0");
+    EXPECT_THAT(refusal(folder / "a.zarr"), HasSubstr("none of its 1152921504606846976 chunks"));
+}
+
+// Names that only look like one of a chunk: of another image, beyond the shape, not as numbers are written.
+TEST(Zarr, CountsTheChunksOfItsVolumeAlone) {
+    const test::TempFolder folder;
+    for (const std::string separator : {".", "/"}) {
+        const fs::path store = folder / (separator == "/" ? "nested.zarr" : "flat.zarr");
+        json array = smallArray();
+        array["shape"] = {2, 3, 3, 4};
+        array["chunks"] = {1, 1, 3, 4};
+        array["fill_value"] = 7;
+        array["dimension_separator"] = separator;
+        put(store / ".zarray", array.dump());
+        put(store / ".zattrs", R"({"_ARRAY_DIMENSIONS": ["t", "z", "y", "x"]})");
+        for (const char* at : {"0000", "0200", "1100", "1300", "2000", "1010", "100", "10000"}) {
+            std::string name;
+            for (const char* digit = at; *digit; ++digit) name += (name.empty() ? "" : separator) + *digit;
+            if (separator == "." || std::strlen(at) == 4) put(store / name, std::string(12, 'a'));
+        }
+        put(store / (separator == "/" ? "1/02/0/0" : "1.02.0.0"), std::string(12, 'a'));
+        const Image image = readImage(store, {.time = 2});
+        EXPECT_THAT(image.warnings, Contains(HasSubstr("2 of 3 chunks are not there"))) << separator;
+        EXPECT_EQ(image.values[0], 7);
+        EXPECT_EQ(image.values[12], 'a');
+        EXPECT_THAT(readImage(store, {.time = 1}).warnings, Contains(HasSubstr("1 of 3 chunks are not")));
+    }
+}
+
 TEST(Zarr, OtherVersionsAndGroupsSayWhatToDo) {
     const test::TempFolder folder;
     put(folder / "three.zarr/zarr.json", R"({"zarr_format": 3})");

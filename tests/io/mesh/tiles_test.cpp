@@ -487,9 +487,9 @@ class TileFolder : public ::testing::TestWithParam<TileFormat> {};
 TEST_P(TileFolder, IsReplacedAsAWholeAndNothingIsLeftBeside) {
     const TempFolder folder;
     writeTiles(folder / "tiles", ring(Vec3d(0)).levels, GetParam());
-    std::ofstream(folder / "tiles/of_old") << "x";
+    std::ofstream(folder / "tiles/99") << "x";  // as of another segment
     writeTiles(folder / "tiles/", noise().levels, GetParam());
-    EXPECT_FALSE(fs::exists(folder / "tiles/of_old"));
+    EXPECT_FALSE(fs::exists(folder / "tiles/99"));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
@@ -506,12 +506,48 @@ TEST_P(TileFolder, OfSomethingElseIsRefused) {
     EXPECT_EQ(bytesOf(folder / "tiles/letters.txt"), "mine");
 }
 
+// Neuroglancer's volumes, skeletons and meshes of one resolution have an `info`, too.
+TEST_P(TileFolder, WithAnythingElseInItIsNotReplaced) {
+    const TempFolder folder;
+    const Ladder3 ladder = ring(Vec3d(0));
+    const auto refusal = [&] {
+        try {
+            writeTiles(folder / "tiles", ladder.levels, GetParam());
+        } catch (const OperationError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    fs::create_directory(folder / "tiles");
+    std::ofstream(folder / "tiles/info") << R"({"@type": "neuroglancer_skeletons"})";
+    std::ofstream(folder / "tiles/1") << "mine";
+    EXPECT_THAT(refusal(), HasSubstr("move it away"));
+    EXPECT_EQ(bytesOf(folder / "tiles/1"), "mine");
+    fs::remove_all(folder / "tiles");
+    EXPECT_EQ(refusal(), "");
+    std::ofstream(folder / "tiles/letters.txt") << "mine";
+    EXPECT_THAT(refusal(), HasSubstr("move it away"));
+    EXPECT_EQ(bytesOf(folder / "tiles/letters.txt"), "mine");
+    fs::remove(folder / "tiles/letters.txt");
+    EXPECT_EQ(refusal(), "");
+}
+
 TEST_P(TileFolder, IsNotMadeWithoutTrianglesOrWhenStopped) {
     const TempFolder folder;
     EXPECT_THROW(writeTiles(folder / "tiles", std::vector<TileLevel>(2), GetParam()), InputError);
     Progress stopped;
     stopped.stopRequested = [] { return true; };
     EXPECT_THROW(writeTiles(folder / "tiles", ring(Vec3d(0)).levels, GetParam(), {}, stopped), Cancelled);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST_P(TileFolder, IsNotMadeOfVoxelsThatAreNoLengthOrBeyondCounting) {
+    const TempFolder folder;
+    for (const double voxel : {0.0, -1.0, std::nan(""), HUGE_VAL, 1e-12}) {
+        Ladder3 ladder = ring(Vec3d(0));
+        ladder.levels.front().voxel = voxel;
+        EXPECT_THROW(writeTiles(folder / "tiles", ladder.levels, GetParam()), InputError) << voxel;
+    }
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
