@@ -123,8 +123,11 @@ Point point(const std::string& text) {
 
 RegionBox box(const std::string& text) {
     if (text.starts_with(kBox)) {
-        const std::vector<double> n = list(text.substr(kBox.size()), number);
-        if (n.size() != 6) throw UsageError("'" + text + "' is not a box, box:X,Y,Z,X,Y,Z");
+        const std::string corners = text.substr(kBox.size());
+        const UsageError noBox("'" + text + "' is not a box, box:X,Y,Z,X,Y,Z or X,Y,Z:X,Y,Z");
+        if (corners.find(':') != std::string::npos) throw noBox;
+        const std::vector<double> n = list(corners, number);
+        if (n.size() != 6) throw noBox;
         return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     }
     const auto colon = text.find(':');

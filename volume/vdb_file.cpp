@@ -86,7 +86,9 @@ Preamble readPreamble(const std::string& name, const FileBytes& file) {
     const std::int64_t magic = openvdb::OPENVDB_MAGIC;
     if (start.compare(0, 8, std::string(reinterpret_cast<const char*>(&magic), 8), 0,
                       std::min<std::size_t>(8, start.size())) != 0)
-        throw InputError(name, "is not a .vdb file: it does not begin with OpenVDB's magic number");
+        throw InputError(name,
+                         "is not a .vdb file: it does not begin with OpenVDB's magic number; isowave analyse "
+                         "makes a pyramid of an image or a mesh");
     if (result.length < kHeaderBytes + 8)
         throw InputError(name, fmt::format("holds {} bytes, fewer than a .vdb file's header; it is truncated",
                                            result.length));

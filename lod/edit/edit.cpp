@@ -181,7 +181,8 @@ class Editor {
 
     void make(const EditMove& edit) {
         requireFinite(story_.text, edit.by);
-        if (edit.by == Point{}) throw UsageError(story_.text + ": moves by nothing");
+        if (edit.by == Point{})
+            throw UsageError(story_.text + ": moves by nothing; --by X,Y,Z behind it says by how much");
         RegionBox moved = edit.box;
         for (std::size_t axis = 0; axis < 3; ++axis)
             moved.low[axis] += edit.by[axis], moved.high[axis] += edit.by[axis];

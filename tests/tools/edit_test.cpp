@@ -82,9 +82,10 @@ TEST_F(EditedTorus, RefusesWhatMakesNoSense) {
     expectRefused({"--cut", "ball:20,0,3", "-o", out}, 2, "ball:X,Y,Z,R");
     expectRefused({"--cut", "1,2,3", "-o", out}, 2, "two opposite corners");
     expectRefused({"--cut", "box:1,2,3", "-o", out}, 2, "box:X,Y,Z,X,Y,Z");
+    expectRefused({"--cut", "box:1,2,3:4,5,6", "-o", out}, 2, "'box:1,2,3:4,5,6' is not a box");
     expectRefused({"--cut", "0,0,0:1,0,1", "-o", out}, 2, "no extent along y");
     expectRefused({"--by", "1,0,0", "-o", out}, 2, "--by: stands behind a --move");
-    expectRefused({"--move", "0,0,0:9,9,9", "-o", out}, 2, "moves by nothing");
+    expectRefused({"--move", "0,0,0:9,9,9", "-o", out}, 2, "moves by nothing; --by X,Y,Z");
     expectRefused({"--cut", "ball:500,0,0,3", "-o", out}, 3, "misses the solid");
     expectRefused({"--add", "ball:20,0,0,2", "-o", out}, 3, "lies in the solid altogether");
     expectRefused({"--cut", "ball:0,0,0,60", "-o", out}, 3, "removes all of the solid");

@@ -226,6 +226,7 @@ TEST(MeshHierarchyCommands, RefuseBadInputInOneLine) {
         {{"rebuild", base, "--details", details, "--edited", fine, "-o", fine}, 2, "what this command reads"},
         {{"rebuild", base, "-o", out}, 2, "--details: is needed"},
         {{"rebuild", base, "--details", fine, "-o", out}, 3, "holds no details of a mesh"},
+        {{"rebuild", base, "--details", fine, "-o", in(folder, "out.npy")}, 3, "holds no details of a mesh"},
         {{"rebuild", base, "--details", in(folder, "damaged.details"), "-o", out}, 3, "is damaged"},
         {{"rebuild", base, "--details", in(folder, "cut.details"), "-o", out}, 3, "truncated"},
         {{"rebuild", car, "--details", details, "-o", out}, 3, "another connectivity"},

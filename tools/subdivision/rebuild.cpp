@@ -142,9 +142,9 @@ int Rebuild::run(Console& console) {
 }
 
 int Rebuild::runMesh(Console& console) {
-    polygonFormatOf(*output_);  // a wrong name is found before the work
+    Hierarchy hierarchy = loadHierarchy(*details_, depth_);  // first: it is what says that a mesh is meant
+    polygonFormatOf(*output_);                               // a wrong name is found before the work
     openJson();
-    Hierarchy hierarchy = loadHierarchy(*details_, depth_);
     requireBase(arguments[0], *details_, hierarchy);
     const RebuildOptions options = rebuildOptions(hierarchy);
     const auto [mesh, report] = [&] {
