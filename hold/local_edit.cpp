@@ -156,10 +156,12 @@ std::optional<LocalEdit> EditTrial::attempt(const EditManner& manner, std::optio
     return edit;
 }
 
-// A speck or a bubble that comes or goes changes it, too: by that of a ball, which is not what is asked for.
+// Of a handle that goes: a speck or a bubble that comes or goes changes it, too, by that of a ball. Where a part is joined or a cavity
+// opened, that is what is asked for.
 bool EditTrial::changesEulerBy(int euler) const {
     constexpr std::int64_t kTwiceOfBall = 4;
     const std::int64_t change = patchAfter_.twiceEuler() - patchBefore_.twiceEuler() - 2 * euler;
+    if (euler < 0) return change == 0;
     return change % kTwiceOfBall == 0 &&
            change == kTwiceOfBall * (patchAfter_.closedPieces() - patchBefore_.closedPieces());
 }

@@ -43,8 +43,8 @@ class EditTrial {
     EditTrial(const BSplineField& field, int refine, const EditPlan& plan);
 
     // The least change (volume/row_ascent.h) of the control points within reach of the plan's points; nothing where no change is needed, or
-    // where the Euler number of the mesh of polygonize(field, refine), less that of specks and bubbles around, does not change by
-    // `euler`. Volume and Euler number are exact:
+    // where the Euler number of the mesh of polygonize(field, refine) does not change by `euler`; where that is positive, less that of
+    // the specks and bubbles around. Volume and Euler number are exact:
     // the surroundings before and after are cut out in the same way.
     std::optional<LocalEdit> attempt(const EditManner& manner, std::optional<int> euler = {});
 

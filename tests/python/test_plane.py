@@ -20,7 +20,7 @@ def command_curves(tmp_path, source, *options):
 
 def stable(report):
     return {key: [{k: v for k, v in step.items() if k != "file"} for step in value] if key == "steps" else value
-            for key, value in report.items() if key != "peak_memory_bytes"}  # fmt: skip
+            for key, value in report.items() if key not in ("peak_memory_bytes", "remarks")}  # fmt: skip
 
 
 @pytest.mark.parametrize("source, options", [(AFRICA, {"pixels": 256}), (KEYRING, {}), (KEYRING, {"smooth": True, "hold": "none"})])
