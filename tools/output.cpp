@@ -94,7 +94,7 @@ OutputFolder::OutputFolder(const fs::path& folder, Inputs inputs)
     if (!folder_.has_filename())
         throw OperationError(folder.string(), "is not a name for a folder; give -o out/part");
     if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
-        throw OperationError(folder_.string(), "is a file; -o names the folder that gets one mesh a level");
+        throw OperationError(folder_.string(), "is a file; -o names the folder that gets the results");
     if (fs::is_symlink(folder_, error) && !fs::exists(folder_, error))
         throw OperationError(folder_.string(), "is a link to nothing; make the folder that it leads to");
     // Inside the folder when there is one (it may be a link to another disk), beside it when there is none.

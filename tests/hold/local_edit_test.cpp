@@ -67,6 +67,52 @@ TEST(EditTrial, GivesNothingWhereTheEulerNumberWouldNotChangeAsAskedFor) {
     EXPECT_TRUE(trial.attempt({}, 0));
 }
 
+// The cavity lies in the surroundings as a whole, before: it goes with its ball's Euler number, and that is what is wanted.
+TEST(EditTrial, OpensACavityThatIsSmall) {
+    const auto hollow = [](const openvdb::Vec3d& p) {
+        return std::max(p.length() - 6, 1.4 - (p - openvdb::Vec3d(3.1, 0, 0)).length());
+    };
+    const BSplineField field = fieldFromDistance(12, hollow);
+    ASSERT_EQ(topologyOf(polygonize(field, {.refine = 2})).cavities, 1);
+    EditPlan plan;
+    plan.fill = false;
+    for (int x = 9; x <= 12; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) plan.points.emplace_back(x, y, z);
+    const auto edit = EditTrial(field, 2, plan).attempt({1.0, true}, -2);
+    ASSERT_TRUE(edit);
+    BSplineField changed = field;
+    changed.controlPoints = field.controlPoints->deepCopy();
+    changed.shape = field.shape->deepCopy();
+    apply(*edit, changed);
+    const MeshTopology opened = topologyOf(polygonize(changed, {.refine = 2}));
+    EXPECT_EQ(opened.cavities, 0);
+    EXPECT_EQ(opened.genus, 0);
+}
+
+// A blind hole whose mouth is shut becomes a cavity: that is no handle less.
+TEST(EditTrial, TakesABubbleThatAppearsForNoHandle) {
+    const auto drilled = [](const openvdb::Vec3d& p) {
+        const openvdb::Vec3d beyond(std::min(0.0, p.x() - 4.8), p.y(), p.z());
+        return std::max(p.length() - 7, 1.2 - beyond.length());
+    };
+    const BSplineField field = fieldFromDistance(12, drilled);
+    ASSERT_EQ(topologyOf(polygonize(field, {.refine = 2})).cavities, 0);
+    EditPlan plan;
+    for (int x = 13; x <= 14; ++x)
+        for (int y = -2; y <= 2; ++y)
+            for (int z = -2; z <= 2; ++z) plan.points.emplace_back(x, y, z);
+    EditTrial trial(field, 2, plan);
+    const auto shut = trial.attempt({1.0, true});
+    ASSERT_TRUE(shut);
+    BSplineField changed = field;
+    changed.controlPoints = field.controlPoints->deepCopy();
+    changed.shape = field.shape->deepCopy();
+    apply(*shut, changed);
+    ASSERT_EQ(topologyOf(polygonize(changed, {.refine = 2})).cavities, 1);
+    EXPECT_FALSE(trial.attempt({1.0, true}, 2));
+}
+
 TEST(EditTrial, GivesNothingWhereNothingNeedsToChange) {
     const BSplineField field = fieldFromDistance(12, sphere(6));
     EditPlan plan;

@@ -56,6 +56,10 @@ class Multiscale {
             all.push_back(textOf(at(dataset, "path")));
         if (all.empty() || std::find(all.begin(), all.end(), "") != all.end())
             refuse("has no datasets with a path");
+        for (const std::string& path : all)
+            if (leavesTheStore(path))
+                refuse("has the dataset " + path +
+                       ", which is not in the store; expected a name beside .zattrs");
         return all;
     }
 
@@ -74,6 +78,9 @@ class Multiscale {
     }
 
   private:
+    static bool leavesTheStore(const fs::path& path) {
+        return path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end();
+    }
     [[noreturn]] void refuse(const std::string& what) const {
         throw InputError((folder_ / ".zattrs").string(), "its multiscales " + what);
     }

@@ -306,6 +306,8 @@ TEST(Zarr, AttributesThatMakeNoSenseAreRefused) {
         {with(R"([{"name": "z", "unit": "parsec"}, "y", "x"])", "[]"), "no length"},
         {with(R"(["t", "y", "x"])", "[]"), "holds 2 times; choose one with --time, 1 to 2"},
         {R"({"multiscales": [{"datasets": []}]})", "no datasets"},
+        {R"({"multiscales": [{"datasets": [{"path": "../other/0"}]}]})", "not in the store"},
+        {R"({"multiscales": [{"datasets": [{"path": "/etc"}]}]})", "not in the store"},
         {R"({"multiscales": [{"axes": 3, "datasets": [{"path": "0"}]}]})", "expected a list"},
         {R"({"multiscales": [{"datasets": [{"path": "7"}]}]})", "7/.zarray"},
         {"{", "no JSON"}};
