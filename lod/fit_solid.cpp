@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 
 #include "base/number_text.h"
@@ -11,11 +10,8 @@
 #include "lod/option_checks.h"
 #include "lod/source.h"
 #include "volume/distance.h"
-#include "volume/leaf_words.h"
 
 namespace isowave::lod {
-namespace {
-
 FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
     FitSummary summary;
     summary.method = fitting.method;
@@ -33,8 +29,6 @@ FitSummary summaryOf(const Fitting& fitting, const FitReport& report) {
     summary.repairAgreed = report.repairAgreed;
     return summary;
 }
-
-}  // namespace
 
 const char* nameOf(FitMethod method) { return kFitMethods[static_cast<std::size_t>(method)]; }
 
@@ -93,6 +87,10 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
     }
     solid.fit = summaryOf(fitting, report);
     solid.fit->walls = walls;
+    tellDisagreement(report, progress);
+}
+
+void tellDisagreement(const FitReport& report, const Progress& progress) {
     if (report.disagreeing > 0)
         progress.say(fmt::format("the sign of {} of {} lattice points differs from the input's",
                                  grouped(report.disagreeing), grouped(report.latticePoints)));
@@ -112,16 +110,12 @@ NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance) {
     return nodesFromSigns(*inside);
 }
 
+double volumeOfVoxel(const openvdb::math::Transform& transform) {
+    return std::abs(transform.baseMap()->getAffineMap()->getMat4().getMat3().det());
+}
+
 double volumeInside(const Shape& shape) {
-    std::int64_t count = 0;
-    for (auto leaf = shape.constTree().cbeginLeaf(); leaf; ++leaf)
-        for (const std::uint64_t word : insideWordsOf(*leaf)) count += std::popcount(word);
-    auto tile = shape.cbeginValueAll();
-    tile.setMaxDepth(openvdb::BoolTree::ValueAllCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile)
-        if (*tile) count += static_cast<std::int64_t>(tile.getVoxelCount());
-    const openvdb::Mat4d indexToWorld = shape.transform().baseMap()->getAffineMap()->getMat4();
-    return static_cast<double>(count) * std::abs(indexToWorld.getMat3().det());
+    return static_cast<double>(pointsInside(shape)) * volumeOfVoxel(shape.transform());
 }
 
 bool hasSurface(const BSplineField& field) {
@@ -132,7 +126,11 @@ bool hasSurface(const BSplineField& field) {
 }
 
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy) {
-    if (!hasSurface(field)) throw InputError(name, "has no surface at this resolution: " + remedy);
+    if (!hasSurface(field)) refuseNoSurface(name, remedy);
+}
+
+void refuseNoSurface(const std::string& name, const std::string& remedy) {
+    throw InputError(name, "has no surface at this resolution: " + remedy);
 }
 
 }  // namespace isowave::lod

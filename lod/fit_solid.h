@@ -6,19 +6,12 @@
 
 #include "base/stage_clock.h"
 #include "isowave/solid.h"
+#include "lod/fitting.h"
 #include "lod/memory.h"
 #include "lod/solid_state.h"
-#include "volume/fit.h"
-#include "volume/fit/fit_mask.h"
 
 namespace isowave::lod {
 
-struct Fitting {
-    FitMethod method;
-    DistanceFitOptions distance;
-    BinaryFitOptions binary;
-    MaskFitOptions mask;
-};
 // fallback: the method where the options leave it open.
 Fitting fittingOf(const SolidOptions& options, FitMethod fallback);
 
@@ -44,15 +37,22 @@ struct Samples {
 void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, double memoryLimit,
          const std::string& remedy, const Progress& progress, StageClock& clock);
 
+// What the fit's report says, for people; and a remark where it could not meet all signs.
+FitSummary summaryOf(const Fitting& fitting, const FitReport& report);
+void tellDisagreement(const FitReport& report, const Progress& progress);
+
 // The signs of a grid of distances, for the fits that know nothing else.
 NodeCollection nodesOfDistance(const openvdb::FloatGrid& distance);
 
+// World units^3, of a voxel.
+double volumeOfVoxel(const openvdb::math::Transform& transform);
 // Of the lattice points inside, each as large as a voxel of the transform; world units^3.
 double volumeInside(const Shape& shape);
 
 // Whether there are lattice points inside and outside.
 bool hasSurface(const BSplineField& field);
 
+[[noreturn]] void refuseNoSurface(const std::string& name, const std::string& remedy);
 // Throws InputError where the field has only one side. remedy: "the image holds nothing but inside".
 void requireSurface(const BSplineField& field, const std::string& name, const std::string& remedy);
 

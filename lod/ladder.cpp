@@ -201,17 +201,21 @@ struct PyramidCounts {
     std::int64_t coefficientsStored = 0, controlPoints = 0, coarsestControlPoints = 0;
 };
 
-PyramidCounts descendFrom(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
+std::int64_t controlPointsOf(const Solid& solid) {
+    const Solid::State& state = SolidAccess::of(solid);
+    return state.slabs ? state.slabs->extent().controlPoints : state.field->controlPointCount();
+}
+
+PyramidCounts descendSolid(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
                           StageClock& clock) {
     const StageClock::Scope scope(clock, "analyse");
     wavelets::AnalyseOptions options{.order = solid.order()};
     if (choice.lastVisited()) options.maxSteps = *choice.lastVisited();
-    BSplineField field = SolidAccess::takeField(std::move(solid));
     PyramidCounts counts;
-    counts.controlPoints = field.controlPointCount();
-    const wavelets::Descent descent =
-        wavelets::descend(std::exchange(field, {}), options, progress,
-                          [&](int step, const BSplineField& f) { maker.visit(step, f); });
+    counts.controlPoints = controlPointsOf(solid);
+    const wavelets::Descent descent = lod::descendFrom(
+        std::move(solid), options, [&](int step) { return choice.visits(step); },
+        [&](int step, const BSplineField& f) { maker.visit(step, f); }, progress);
     counts.steps = descent.steps;
     counts.coefficientsStored = descent.coefficientsStored;
     counts.coarsestControlPoints = descent.coarsest.controlPointCount();
@@ -233,7 +237,7 @@ PyramidCounts climb(Solid solid, const StepChoice& choice, Maker& maker, const P
     const StepOrder order = solid.order();
     const auto& pyramid = SolidAccess::of(solid).pyramid;
     const PyramidCounts counts = pyramid ? walk(*pyramid, name, choice, maker, progress, clock)
-                                         : descendFrom(std::move(solid), choice, maker, progress, clock);
+                                         : descendSolid(std::move(solid), choice, maker, progress, clock);
     if (maker.empty()) throw InputError(name, "has no surface; nothing to polygonize");
     if (choice.first() > counts.steps)
         throw InputError(name, tooFarText(choice.first(), counts.steps, order));

@@ -10,6 +10,7 @@
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
 #include "lod/memory.h"
+#include "lod/slabs/slabbed_field.h"
 #include "lod/source.h"
 #include "volume/distance.h"
 
@@ -194,6 +195,31 @@ ImageSolid shapeOf(const ImagePlan& plan, const SeenImage& seen, const SolidOpti
     return {.iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
 }
 
+constexpr const char* kNoSurface = "the image holds nothing but inside or nothing but outside";
+
+// Grey values do not say how much is inside.
+void putVolume(Solid::State& solid, InputReport::Kind kind, double volume) {
+    if (kind != InputReport::Kind::greyImage && !solid.openBorder) solid.input.volume = volume;
+}
+
+void fitInSlabs(Solid::State& solid, ImageStream& stream, const ImageSolid& shape, const Fitting& fitting,
+                const SolidOptions& options, double limit, const Progress& progress, StageClock& clock) {
+    const StageClock::Scope scope(clock, "fit");
+    const Image& image = stream.header();
+    SlabFitPlan plan{shape, fitting, SlabCuts::even(2, image.size[2], *options.slabs), image.size[2],
+                     image.indexToWorld,
+                     [&](std::int64_t points) {
+                         refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points), limit,
+                                        "take more --slabs");
+                     }};
+    const auto folder =
+        options.slabFolder.empty() ? std::filesystem::temp_directory_path() : options.slabFolder;
+    solid.slabs = std::make_shared<SlabbedField>(stream, plan, *options.slabs, folder, progress);
+    if (!solid.slabs->hasSurface()) refuseNoSurface(solid.name(), kNoSurface);
+    solid.fit = summaryOf(fitting, solid.slabs->report());
+    tellDisagreement(solid.slabs->report(), progress);
+}
+
 Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions& options,
                     const Progress& progress, StageClock& clock) {
     const Image image = seen.stream->header();
@@ -215,7 +241,13 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
         return result;
     };
     const double limit = memoryLimit(options.maxMemory);
-    const std::string remedy = "crop or downsample it";
+    if (options.slabs) {
+        fitInSlabs(solid, *seen.stream, shape, fitting, options, limit, progress, clock);
+        seen.stream.reset();
+        putVolume(solid, plan.kind, double(solid.slabs->inside()) * volumeOfVoxel(solid.slabs->transform()));
+        return solid;
+    }
+    const std::string remedy = "crop or downsample it, or take it in slabs (--slabs)";
     const auto allow = [&](std::int64_t points) {  // voxels that had to be decoded are still there
         const double bytes = kBytesPerLeafPoint * static_cast<double>(points);
         refuseTooLarge(name, bytes + static_cast<double>(seen.stream->bytesKept()), limit, remedy);
@@ -226,9 +258,8 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
         return grid;
     };
     fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint}, limit, remedy, progress, clock);
-    if (plan.kind != InputReport::Kind::greyImage && !options.openBorder)
-        solid.input.volume = volumeInside(*solid.field->shape);
-    requireSurface(*solid.field, name, "the image holds nothing but inside or nothing but outside");
+    putVolume(solid, plan.kind, volumeInside(*solid.field->shape));
+    requireSurface(*solid.field, name, kNoSurface);
     return solid;
 }
 

@@ -47,8 +47,10 @@ Pyramid analyse(Solid solid, const Progress& progress) {
     auto source = input.kind == InputReport::Kind::pyramid ? input.source
                                                            : lod::sourceOf(input, solid.fit());  // packed
     const StepOrder order = solid.order();
+    const std::shared_ptr<const lod::SlabbedField> slabs = SolidAccess::of(solid).slabs;
     wavelets::Pyramid pyramid =
-        wavelets::analyse(SolidAccess::takeField(std::move(solid)), {.order = order}, progress);
+        slabs ? slabs->analyse(order, progress)
+              : wavelets::analyse(SolidAccess::takeField(std::move(solid)), {.order = order}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));
 }

@@ -61,6 +61,7 @@ void refuseForeignOptions(const std::string& name, InputKind kind, const SolidOp
         {"--resample-slices", o.image.resampleSlices, true, false, false},
         {"--grid", o.grid.has_value(), false, false, true},
         {"--axes", o.axes.has_value(), true, true, true},
+        {"--slabs", o.slabs.has_value(), true, false, false},
     };
     const char* what = kind == InputKind::image  ? "an image"
                        : kind == InputKind::mesh ? "a mesh"
@@ -89,10 +90,7 @@ Solid opened(const std::string& name, InputKind kind, const SolidOptions& option
     refuseForeignOptions(name, kind, options);
     StageClock clock;
     Solid::State state = open(clock);
-    if (kind != InputKind::pyramid) {
-        const openvdb::Vec3d voxel = state.field->transform().voxelSize();
-        state.order = orderFor({voxel.x(), voxel.y(), voxel.z()}, options, name, progress);
-    }
+    if (kind != InputKind::pyramid) state.order = orderFor(state.voxel(), options, name, progress);
     state.stages = clock.stages();
     state.seconds = clock.secondsSoFar();
     return SolidAccess::make(std::move(state));
@@ -127,7 +125,9 @@ InputKind checkedKindOf(const fs::path& path, const SolidOptions& options) {
 
 }  // namespace lod
 
-double Solid::K() const { return state_->field ? state_->field->K : state_->pyramid->K; }
+double Solid::K() const {
+    return state_->field ? state_->field->K : state_->slabs ? state_->slabs->K() : state_->pyramid->K;
+}
 Space Solid::space() const { return state_->space; }
 const InputReport& Solid::input() const { return state_->input; }
 const std::optional<FitSummary>& Solid::fit() const { return state_->fit; }

@@ -5,6 +5,7 @@
 
 #include "isowave/mesh.h"
 #include "isowave/solid.h"
+#include "lod/slabs/slabbed_field.h"
 #include "volume/field.h"
 #include "wavelets/pyramid.h"
 
@@ -21,8 +22,9 @@ struct Border {
 }  // namespace lod
 
 struct Solid::State {
-    // One of the two.
+    // One of the three.
     std::optional<BSplineField> field;
+    std::shared_ptr<const lod::SlabbedField> slabs;
     std::optional<wavelets::Pyramid> pyramid;
     StepOrder order;  // of its steps, made or to be made
     Space space = Space::unspecified;
@@ -34,6 +36,11 @@ struct Solid::State {
     std::vector<StageSeconds> stages;
     double seconds = 0;
 
+    // Edges of a voxel of the field.
+    std::array<double, 3> voxel() const {
+        const openvdb::Vec3d size = (slabs ? slabs->transform() : field->transform()).voxelSize();
+        return {size.x(), size.y(), size.z()};
+    }
     // What messages call it.
     const std::string& name() const { return input.path; }
 };
@@ -41,8 +48,9 @@ struct Solid::State {
 struct SolidAccess {
     static Solid make(Solid::State state) { return Solid(std::make_shared<Solid::State>(std::move(state))); }
     static const Solid::State& of(const Solid& solid) { return *solid.state_; }
-    // The field, moved out where nobody else holds the solid. REQUIRES: it has one.
+    // The field, moved out where nobody else holds the solid. REQUIRES: it has one, or one in slabs.
     static BSplineField takeField(Solid solid) {
+        if (solid.state_->slabs) return solid.state_->slabs->whole();
         return solid.state_.use_count() == 1 ? *std::exchange(solid.state_->field, {}) : *solid.state_->field;
     }
 };

@@ -74,6 +74,15 @@ BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::stri
     return pyramid.field(step, progress);
 }
 
+wavelets::Descent descendFrom(Solid solid, const wavelets::AnalyseOptions& options,
+                              const std::function<bool(int step)>& isAskedFor,
+                              const std::function<void(int step, const BSplineField&)>& onStep,
+                              const Progress& progress) {
+    const auto asked = [&](int step) { return isAskedFor && isAskedFor(step); };
+    if (const auto slabs = SolidAccess::of(solid).slabs) return slabs->descend(options, asked, onStep, progress);
+    return wavelets::descend(SolidAccess::takeField(std::move(solid)), options, progress, onStep);
+}
+
 BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock) {
     const std::string name = solid.input().path;
     if (const auto& pyramid = SolidAccess::of(solid).pyramid) {
@@ -83,8 +92,8 @@ BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageC
     if (step == 0) return SolidAccess::takeField(std::move(solid));
     const StageClock::Scope scope(clock, "analyse");
     const StepOrder order = solid.order();
-    const wavelets::Descent descent = wavelets::descend(SolidAccess::takeField(std::move(solid)),
-                                                        {.order = order, .maxSteps = step}, progress);
+    const wavelets::Descent descent =
+        descendFrom(std::move(solid), {.order = order, .maxSteps = step}, {}, {}, progress);
     if (step > descent.steps) throw InputError(name, tooFarText(step, descent.steps, order));
     return descent.coarsest;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace isowave::lod {
 // The field of a pyramid's step. Throws UsageError when it was opened from a coarser step on, InputError when it does not go so far.
 BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::string& name,
                      const Progress& progress);
+
+// wavelets::descend() of a solid that is no pyramid. onStep: is called at least for the steps that are asked for.
+wavelets::Descent descendFrom(Solid solid, const wavelets::AnalyseOptions& options,
+                              const std::function<bool(int step)>& isAskedFor,
+                              const std::function<void(int step, const BSplineField&)>& onStep,
+                              const Progress& progress);
 
 // The field of a step. Throws InputError when the solid does not go so far.
 BSplineField fieldAtStep(Solid solid, int step, const Progress& progress, StageClock& clock);

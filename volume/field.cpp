@@ -1,8 +1,10 @@
 #include "volume/field.h"
 
 #include <array>
+#include <bit>
 
 #include "volume/cubic_weights.h"
+#include "volume/leaf_words.h"
 
 namespace isowave {
 namespace {
@@ -75,6 +77,17 @@ openvdb::MaskTree definedNodes(const BSplineField& field) {
 
 std::int64_t definedNodeCount(const BSplineField& field) {
     return static_cast<std::int64_t>(definedNodes(field).activeVoxelCount());
+}
+
+std::int64_t pointsInside(const Shape& shape) {
+    std::int64_t count = 0;
+    for (auto leaf = shape.constTree().cbeginLeaf(); leaf; ++leaf)
+        for (const std::uint64_t word : insideWordsOf(*leaf)) count += std::popcount(word);
+    auto tile = shape.cbeginValueAll();
+    tile.setMaxDepth(openvdb::BoolTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile) count += static_cast<std::int64_t>(tile.getVoxelCount());
+    return count;
 }
 
 }  // namespace isowave

@@ -54,4 +54,7 @@ openvdb::Vec3d evaluateGradient(const BSplineField& field, const openvdb::Vec3d&
 std::int64_t definedNodeCount(const BSplineField& field);
 openvdb::MaskTree definedNodes(const BSplineField& field);
 
+// Lattice points inside.
+std::int64_t pointsInside(const Shape& shape);
+
 }  // namespace isowave

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "isowave/error.h"
+#include "volume/fit/fit_part.h"
 #include "volume/fit/known.h"
 #include "volume/fit/repair.h"
 #include "volume/leaf_words.h"
@@ -51,9 +52,6 @@ void laplacianPass(openvdb::tree::LeafManager<openvdb::FloatTree>& leaves, const
     leaves.swapLeafBuffer(1);
 }
 
-// E§2 asks for the sign only; the margin keeps every node stabbed when the field is next filtered or stored.
-constexpr double kBinaryFloor = 0.05, kBinaryTarget = 0.1;
-
 // ---- distances
 
 // Nodes with a corner nearer than `band`, and nodes whose corner signs differ.
@@ -94,42 +92,35 @@ Mask nodesNear(const openvdb::FloatTree& distance, float band) {
 
 }  // namespace
 
-BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options, FitReport* report,
-                       const Progress& progress) {
-    progress("fitting", 0);
+namespace {
+
+// ±K on I, smoothed; a source's lattice point i is i + shift of the field.
+BSplineField smoothedSigns(const NodeCollection& nodes, const Mask& known, const openvdb::Coord& shift,
+                           const BinaryFitOptions& options, const Progress& progress) {
     const openvdb::BoolTree& signs = nodes.grid->constTree();
-    const Mask kept(signs, false, openvdb::TopologyCopy());
-    Mask known = knownAround(kept);
-    const openvdb::Coord shift = moveOrigin(known);
     const auto makeInside = [&signs, &shift] { return Signs(signs, shift); };
     BSplineField field = makeField(makeShape(known, signs, shift, makeInside), options.K,
                                    *shiftedTransform(nodes.grid->transform(), shift));
-    FitReport result;
-    if (options.passes > 0) {
-        openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree(), 1);
-        for (; result.filterPasses < options.passes; ++result.filterPasses) {
-            progress("fitting", 0.5 * result.filterPasses / options.passes);
-            laplacianPass(leaves, field.controlPoints->constTree());
-        }
+    if (options.passes == 0) return field;
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree(), 1);
+    for (int pass = 0; pass < options.passes; ++pass) {
+        progress("fitting", 0.5 * pass / options.passes);
+        laplacianPass(leaves, field.controlPoints->constTree());
     }
-    finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, report, progress);
     return field;
 }
 
-BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
-                         FitReport* report, const Progress& progress) {
-    assert(0 < options.band && options.band <= options.halfWidth);
-    if (distance.background() < 0)
-        throw InputError(distance.getName(), "everything far away is inside; a solid must be finite");
-    progress("fitting", 0);
+Mask knownOf(const NodeCollection& nodes) {
+    return knownAround(Mask(nodes.grid->constTree(), false, openvdb::TopologyCopy()));
+}
+
+// Distances, quasi-interpolated on I: on each axis c = (8 v_i - v_{i-1} - v_{i+1})/6, exact for cubics.
+BSplineField interpolatedDistances(const openvdb::FloatGrid& distance, const Mask& known,
+                                   const openvdb::Coord& shift, const DistanceFitOptions& options) {
     const openvdb::FloatTree& d = distance.constTree();
-    Mask known = knownAround(nodesNear(d, static_cast<float>(options.band)));
-    const openvdb::Coord shift = moveOrigin(known);
     const auto makeInside = [&d, &shift] { return Signs(d, shift); };
     BSplineField field = makeField(makeShape(known, d, shift, makeInside), options.K,
                                    *shiftedTransform(distance.transform(), shift));
-
-    // Quasi-interpolation: on each axis c = (8 v_i - v_{i-1} - v_{i+1})/6, exact for cubics.
     const double w = options.halfWidth, scale = options.K / w;
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
     leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
@@ -142,9 +133,57 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
             leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
     });
+    return field;
+}
+
+Mask knownOf(const openvdb::FloatGrid& distance, const DistanceFitOptions& options) {
+    assert(0 < options.band && options.band <= options.halfWidth);
+    if (distance.background() < 0)
+        throw InputError(distance.getName(), "everything far away is inside; a solid must be finite");
+    return knownAround(nodesNear(distance.constTree(), static_cast<float>(options.band)));
+}
+
+}  // namespace
+
+BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options, FitReport* report,
+                       const Progress& progress) {
+    progress("fitting", 0);
+    Mask known = knownOf(nodes);
+    const openvdb::Coord shift = moveOrigin(known);
+    BSplineField field = smoothedSigns(nodes, known, shift, options, progress);
+    FitReport result;
+    result.filterPasses = options.passes;
+    finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, report, progress);
+    return field;
+}
+
+BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+                         FitReport* report, const Progress& progress) {
+    progress("fitting", 0);
+    Mask known = knownOf(distance, options);
+    const openvdb::Coord shift = moveOrigin(known);
+    BSplineField field = interpolatedDistances(distance, known, shift, options);
     if (options.adjust) options.adjust(field, shift);
+    const double w = options.halfWidth;
     finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, report, progress);
     return field;
+}
+
+BSplineField fitBinaryPart(const NodeCollection& nodes, const BinaryFitOptions& options,
+                           const openvdb::CoordBBox& box, PartRepair& repair, const Progress& progress) {
+    BSplineField part = smoothedSigns(nodes, knownOf(nodes), openvdb::Coord(0), options, progress);
+    repair = finishPart(part, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, box, progress);
+    return part;
+}
+
+BSplineField fitDistancePart(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+                             const openvdb::CoordBBox& box, PartRepair& repair, const Progress& progress) {
+    BSplineField part =
+        interpolatedDistances(distance, knownOf(distance, options), openvdb::Coord(0), options);
+    const double w = options.halfWidth;
+    repair =
+        finishPart(part, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, box, progress);
+    return part;
 }
 
 }  // namespace isowave

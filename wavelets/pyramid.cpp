@@ -9,42 +9,28 @@ namespace {
 
 constexpr std::int64_t kOneNode = 4 * 4 * 4;  // control points of a single node
 
-// Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so
-// fields end at 64 control points; on the way the number of control points may stay for many steps while the
-// domain moves on. A domain that straddles the origin stays at -2 .. 2 instead: then none of the three directions
-// changes anything.
-struct Extent {
-    std::int64_t controlPoints;
-    openvdb::CoordBBox box;
-
-    explicit Extent(const BSplineField& field)
-        : controlPoints(field.controlPointCount()), box(field.controlPoints->evalActiveVoxelBoundingBox()) {}
-    bool operator==(const Extent&) const = default;
-};
-
 // Halves direction after direction. onDirection(axis, shape, details): the shape of the finer field and what
 // leads back to it.
 template <class OnDirection>
 BSplineField halveAll(BSplineField current, const AnalyseOptions& options, const Progress& progress,
                       const std::function<void(int, const BSplineField&)>& onStep,
                       const OnDirection& onDirection) {
-    Extent extent(current);
+    FieldExtent extent = FieldExtent::of(current);
     const double whole = static_cast<double>(std::max<std::int64_t>(1, extent.controlPoints));
     double worked = 0;
-    constexpr int kNone = 0, kAll = 1 << 0 | 1 << 1 | 1 << 2;
-    int step = 0, unchanged = kNone;  // a bit for each axis that changed nothing since something last changed
-    if (onStep) onStep(0, current);
-    while (extent.controlPoints > kOneNode && step < options.maxSteps && unchanged != kAll) {
+    Halved halved = options.from;
+    if (onStep) onStep(halved.step, current);
+    while (halved.step < options.maxSteps && goesOn(halved, extent)) {
         progress("analysing", std::min(1.0, worked / (3 * whole)));
-        const int axis = options.order.axisAfter(step++);
+        const int axis = options.order.axisAfter(halved.step);
         DirectionResult result = analyseDirection(current, axis, progress);
         onDirection(axis, std::move(current.shape), std::move(result.details));
         current = std::move(result.coarse);
         worked += static_cast<double>(extent.controlPoints);
-        const Extent now(current);
-        unchanged = now == extent ? unchanged | 1 << axis : kNone;
+        const FieldExtent now = FieldExtent::of(current);
+        halved = halvedAlong(axis, halved, extent, now);
         extent = now;
-        if (onStep) onStep(step, current);
+        if (onStep) onStep(halved.step, current);
     }
     progress("analysing", 1);
     return current;
@@ -55,6 +41,29 @@ std::int64_t countOf(const DetailGrid& details) {
 }
 
 }  // namespace
+
+// Halving moves every known control point towards the lattice's origin until -1 .. 2 is left on each axis, so
+// fields end at 64 control points; on the way the number of control points may stay for many steps while the
+// domain moves on. A domain that straddles the origin stays at -2 .. 2 instead: then none of the three directions
+// changes anything.
+FieldExtent FieldExtent::of(const BSplineField& field) {
+    return {field.controlPointCount(), field.controlPoints->evalActiveVoxelBoundingBox()};
+}
+
+void FieldExtent::add(const FieldExtent& part) {
+    if (part.controlPoints == 0) return;
+    controlPoints += part.controlPoints;
+    box.expand(part.box);
+}
+
+bool goesOn(const Halved& halved, const FieldExtent& extent) {
+    constexpr int kAll = 1 << 0 | 1 << 1 | 1 << 2;
+    return extent.controlPoints > kOneNode && halved.unchanged != kAll;
+}
+
+Halved halvedAlong(int axis, Halved halved, const FieldExtent& from, const FieldExtent& to) {
+    return {halved.step + 1, to == from ? halved.unchanged | 1 << axis : 0};
+}
 
 Pyramid analyse(const BSplineField& field, const AnalyseOptions& options, const Progress& progress,
                 const std::function<void(int, const BSplineField&)>& onStep) {
@@ -71,6 +80,7 @@ Pyramid analyse(const BSplineField& field, const AnalyseOptions& options, const 
 Descent descend(BSplineField field, const AnalyseOptions& options, const Progress& progress,
                 const std::function<void(int, const BSplineField&)>& onStep) {
     Descent descent;
+    descent.steps = options.from.step;
     descent.coarsest =
         halveAll(std::move(field), options, progress, onStep, [&](int, Shape::Ptr, DetailGrid::Ptr details) {
             ++descent.steps;

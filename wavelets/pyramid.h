@@ -42,8 +42,30 @@ struct Pyramid {
     std::int64_t coefficientsStored() const;
 };
 
+// How far a field has come down.
+struct Halved {
+    int step = 0;
+    int unchanged = 0;  // a bit for each axis whose halving changed neither domain nor size since something last changed
+};
+
+// Of a field: what tells whether a step changes anything. Domains end at 64 control points, or at a size that halving does not
+// change.
+struct FieldExtent {
+    std::int64_t controlPoints = 0;
+    openvdb::CoordBBox box;  // of control points
+
+    // Of a part the extent of the whole is the sum of those of all parts.
+    static FieldExtent of(const BSplineField& field);
+    void add(const FieldExtent& part);
+    friend bool operator==(const FieldExtent&, const FieldExtent&) = default;
+};
+// Whether there is another step; and where it leads: from an extent to the next along an axis.
+bool goesOn(const Halved& halved, const FieldExtent& extent);
+Halved halvedAlong(int axis, Halved halved, const FieldExtent& from, const FieldExtent& to);
+
 struct AnalyseOptions {
     StepOrder order = {};
+    Halved from = {};  // what the field is; steps are counted from there
     int maxSteps = 1 << 20;  // stop after so many steps, or when one node (4^3 control points) is left
 };
 

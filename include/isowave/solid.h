@@ -103,6 +103,11 @@ struct SolidOptions {
 
     // Bytes that the job may take; default: 70 % of the computer's (or of the container's) memory.
     std::optional<double> maxMemory = {};
+
+    // Images, fit by distance or binary: so many slabs of slices are read, fitted and halved one after the other, and lie in a hidden
+    // folder in between, so that memory is that of a slab. The result is the same to the bit.
+    std::optional<int> slabs = {};
+    std::filesystem::path slabFolder = {};  // where that folder is made, and removed; default: the system's for temporary files
 };
 
 // What was read, and what was decided about it. What a kind of input does not have is empty.

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <mutex>
 
 #include "io/image/check.h"
@@ -56,7 +57,11 @@ struct ImageStream::State {
     };
 
     std::string name;
-    Image header;
+    Image header;                // of the slices that are shown
+    std::int64_t first = 0;      // of these, in the source
+    std::array<double, 3> origin{};  // of slice 0 of the source
+    std::int64_t depth = 0;      // slices of the source
+    std::int64_t wantedSlices = 0;
     SourcePtr source;  // null for an image in memory
     ValueType type = ValueType::float32;
     std::int64_t slabSlices = 1;
@@ -71,7 +76,15 @@ struct ImageStream::State {
 
     std::int64_t sliceVoxels() const { return header.size[0] * header.size[1]; }
     std::int64_t sliceBytes() const { return sliceVoxels() * static_cast<std::int64_t>(sizeOf(type)); }
+    // Once the header is known.
     void chooseSlab(std::int64_t wanted) {
+        wantedSlices = wanted;
+        origin = header.indexToWorld.origin;
+        depth = header.size[2];
+        fitSlab();
+    }
+    void fitSlab() {
+        const std::int64_t wanted = wantedSlices;
         slabSlices = wanted > 0 ? wanted : std::max<std::int64_t>(1, kSlabBytes / sliceBytes());
         slabSlices = std::min(slabSlices, header.size[2]);
     }
@@ -89,10 +102,10 @@ struct ImageStream::State {
     }
 
     void readAll(const Progress& progress) {
-        kept.resize(static_cast<std::size_t>(sliceBytes() * header.size[2]));
-        for (std::int64_t z = 0, end; z < header.size[2]; z = end) {
-            progress("reading", static_cast<double>(z) / static_cast<double>(header.size[2]));
-            end = std::min(z + source->slicesPerRead, header.size[2]);
+        kept.resize(static_cast<std::size_t>(sliceBytes() * depth));
+        for (std::int64_t z = 0, end; z < depth; z = end) {
+            progress("reading", static_cast<double>(z) / static_cast<double>(depth));
+            end = std::min(z + source->slicesPerRead, depth);
             readInto(z, end, kept.data() + z * sliceBytes());
         }
         source.reset();
@@ -123,13 +136,15 @@ struct ImageStream::State {
 
     Slab storedSlab(std::int64_t z0, std::int64_t z1, std::vector<char>& buffer) {
         const std::int64_t count = (z1 - z0) * sliceVoxels();
-        if (all) return {z0, z1, voxelsOf(type, static_cast<const char*>(all) + z0 * sliceBytes(), count)};
+        if (all)
+            return {z0, z1,
+                    voxelsOf(type, static_cast<const char*>(all) + (first + z0) * sliceBytes(), count)};
         buffer.resize(static_cast<std::size_t>((z1 - z0) * sliceBytes()));
-        const bool zero = source->isZero(z0, z1);
+        const bool zero = source->isZero(first + z0, first + z1);
         if (zero)
             std::fill(buffer.begin(), buffer.end(), char(0));
         else
-            readInto(z0, z1, buffer.data());
+            readInto(first + z0, first + z1, buffer.data());
         return {z0, z1, voxelsOf(type, buffer.data(), count), zero};
     }
 
@@ -137,7 +152,7 @@ struct ImageStream::State {
         const auto* values = std::get_if<std::span<const float>>(&slab.voxels);
         if (!values || slab.zero) return;
         NotFinite here;
-        here.countIn(values->data(), static_cast<std::int64_t>(values->size()), slab.z0 * sliceVoxels());
+        here.countIn(values->data(), static_cast<std::int64_t>(values->size()), (first + slab.z0) * sliceVoxels());
         if (here.count == 0) return;
         const std::lock_guard lock(mutex);
         notFinite.add(here);
@@ -205,11 +220,22 @@ void ImageStream::takeAsMask(std::vector<float> values) {
     state_->inMask = std::move(values);
 }
 
+void ImageStream::showSlices(std::int64_t z0, std::int64_t z1) {
+    State& s = *state_;
+    assert(0 <= z0 && z0 < z1 && z1 <= s.depth);
+    s.first = z0;
+    s.header.size[2] = z1 - z0;
+    for (std::size_t a = 0; a < 3; ++a)
+        s.header.indexToWorld.origin[a] =
+            s.origin[a] + static_cast<double>(z0) * s.header.indexToWorld.axis[2][a];
+    s.fitSlab();
+}
+
 const Image& ImageStream::header() const { return state_->header; }
 std::int64_t ImageStream::slabSlices() const { return state_->slabSlices; }
 bool ImageStream::isInFile() const { return !state_->all && !state_->keep; }
 std::int64_t ImageStream::bytesKept() const {
-    return state_->keep ? state_->sliceBytes() * state_->header.size[2] : 0;
+    return state_->keep ? state_->sliceBytes() * state_->depth : 0;
 }
 
 void ImageStream::pass(std::string_view stage, const Progress& progress,

@@ -55,6 +55,10 @@ class ImageStream {
     // several labels. REQUIRES: at least one value.
     void takeAsMask(std::vector<float> values);
 
+    // From now on the image is its slices z0 <= z < z1 alone, counted from 0, with their origin. Each call counts in the whole image.
+    // Voxels that are not finite are found by the first pass over all slices that it comes to, be they all or some.
+    void showSlices(std::int64_t z0, std::int64_t z1);
+
     // All but `values`. The warning about rounded integers is there after the first pass.
     const Image& header() const;
     // Slices in a slab; the last one of the image may have fewer.

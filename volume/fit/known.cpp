@@ -51,21 +51,31 @@ Mask knownAround(const Mask& nodes) {
     openvdb::tools::dilateActiveValues(known, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
                                        openvdb::tools::EXPAND_TILES);
     known.voxelizeActiveTiles();
-    // Leaves without a single known point would only cost memory.
-    std::vector<openvdb::Coord> empty;
-    for (auto leaf = known.cbeginLeaf(); leaf; ++leaf)
-        if (leaf->isEmpty()) empty.push_back(leaf->origin());
-    for (const auto& origin : empty) known.addTile(1, origin, false, false);
-    return known;
+    // Leaves without a single known point would only cost memory, and nodes without leaves make the tree, and a file of it,
+    // depend on more than the leaves.
+    std::vector<MaskLeaf*> leaves;
+    known.stealNodes(leaves);
+    Mask result;
+    for (MaskLeaf* leaf : leaves)
+        if (leaf->isEmpty())
+            delete leaf;
+        else
+            result.addLeaf(leaf);
+    return result;
+}
+
+openvdb::Coord shiftOf(const openvdb::CoordBBox& known) {
+    openvdb::Coord shift(0);
+    if (known.empty()) return shift;
+    for (int a = 0; a < 3; ++a)
+        if (known.min()[a] < -1) shift[a] = -(known.min()[a] & ~7);
+    return shift;
 }
 
 openvdb::Coord moveOrigin(Mask& known) {
     openvdb::CoordBBox box;
-    known.evalActiveVoxelBoundingBox(box);
-    openvdb::Coord shift(0);
-    if (known.empty()) return shift;
-    for (int a = 0; a < 3; ++a)
-        if (box.min()[a] < -1) shift[a] = -(box.min()[a] & ~7);
+    if (!known.empty()) known.evalActiveVoxelBoundingBox(box);
+    const openvdb::Coord shift = shiftOf(box);
     if (shift == openvdb::Coord(0)) return shift;
     std::vector<MaskLeaf*> leaves;
     known.stealNodes(leaves);

@@ -23,6 +23,8 @@ openvdb::MaskTree knownAround(const openvdb::MaskTree& nodes);
 // origin ends at -2 .. 2, two nodes, for ever. So the lattice is shifted, by whole leaves, until nothing lies
 // below -1. Returns the shift: lattice point i of the source is lattice point i + shift of the field.
 openvdb::Coord moveOrigin(openvdb::MaskTree& known);
+// By how much, for what is known in this box.
+openvdb::Coord shiftOf(const openvdb::CoordBBox& known);
 openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& transform,
                                                const openvdb::Coord& shift);
 

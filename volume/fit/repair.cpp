@@ -37,25 +37,21 @@ class Repair {
           target_(target * field.K) {}
 
     void run(int mostPasses, FitReport& report, const Progress& progress) {
-        std::vector<openvdb::Index32> active(leaves_.leafCount());
-        std::iota(active.begin(), active.end(), 0);
-        leaves_.foreach ([](FloatLeaf& leaf, std::size_t i) {
-            leaf.setTransientData(static_cast<openvdb::Index32>(i));  // for neighboursOf()
-        });
         report.repairFloor = floor_ / field_.K;
         report.repairAgreed = false;
-        while (report.repairPasses < mostPasses) {
-            progress.check();
-            const Changes changes = wanted(active);
-            std::int64_t count = 0;
-            for (const auto& [leaf, values] : changes) count += static_cast<std::int64_t>(values.size());
+        passes(mostPasses, progress, [&](const Changes& changes) {
+            const std::int64_t count = countIn(changes, nullptr);
             report.repairAgreed = count == 0;
-            if (report.repairAgreed) return;
-            apply(changes);
             report.repaired += count;
-            ++report.repairPasses;
-            active = neighboursOf(changes);
-        }
+            report.repairPasses += count > 0;
+        });
+    }
+
+    std::vector<std::int64_t> runPart(int mostPasses, const openvdb::CoordBBox& box, const Progress& progress) {
+        std::vector<std::int64_t> repaired;
+        passes(mostPasses, progress,
+               [&](const Changes& changes) { repaired.push_back(countIn(changes, &box)); });
+        return repaired;
     }
 
   private:
@@ -68,6 +64,33 @@ class Repair {
         std::vector<Change> values;
     };
     using Changes = std::vector<LeafChanges>;  // by leaf, without empty ones
+
+    // Calls tell(changes) in each pass, before they are made, in the last one there are none.
+    template <class Tell>
+    void passes(int most, const Progress& progress, const Tell& tell) {
+        std::vector<openvdb::Index32> active(leaves_.leafCount());
+        std::iota(active.begin(), active.end(), 0);
+        leaves_.foreach ([](FloatLeaf& leaf, std::size_t i) {
+            leaf.setTransientData(static_cast<openvdb::Index32>(i));  // for neighboursOf()
+        });
+        for (int pass = 0; pass < most; ++pass) {
+            progress.check();
+            const Changes changes = wanted(active);
+            tell(changes);
+            if (changes.empty()) return;
+            apply(changes);
+            active = neighboursOf(changes);
+        }
+    }
+
+    // box: of whole leaves; null: everywhere.
+    std::int64_t countIn(const Changes& changes, const openvdb::CoordBBox* box) const {
+        std::int64_t count = 0;
+        for (const auto& [leaf, values] : changes)
+            if (!box || box->isInside(leaves_.leaf(leaf).origin()))
+                count += static_cast<std::int64_t>(values.size());
+        return count;
+    }
 
     // Where values in a leaf's order lie on the wrong side of the floor for the sign that the shape asks for.
     LeafWords tooSmall(const std::array<double, 512>& F, const LeafWords& inside) const {
@@ -138,8 +161,11 @@ class Repair {
 };
 
 // Compares the sign of F with the input's at every lattice point where a known control point has a say: I
-// dilated by one. Beyond it F is ±K exactly.
-void countDisagreement(const BSplineField& field, FitReport& report) {
+// dilated by one. Beyond it F is ±K exactly. box: of whole leaves; null: everywhere.
+struct Disagreement {
+    std::int64_t points = 0, disagreeing = 0;
+};
+Disagreement disagreementOf(const BSplineField& field, const openvdb::CoordBBox* box) {
     Mask reach(field.shape->tree(), false, openvdb::TopologyCopy());
     openvdb::tools::dilateActiveValues(reach, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
                                        openvdb::tools::EXPAND_TILES);
@@ -147,6 +173,7 @@ void countDisagreement(const BSplineField& field, FitReport& report) {
     std::atomic<std::int64_t> points{0}, disagreeing{0};
     openvdb::tree::LeafManager<Mask> leaves(reach);
     leaves.foreach ([&](MaskLeaf& leaf, std::size_t) {
+        if (box && !box->isInside(leaf.origin())) return;
         ConstAccessor<openvdb::FloatTree> accessor(field.controlPoints->constTree());
         const Signs signs(field.shape->constTree(), openvdb::Coord(0));
         PaddedLeaf<double, 1, 1> c;
@@ -163,8 +190,7 @@ void countDisagreement(const BSplineField& field, FitReport& report) {
         points += here;
         disagreeing += wrong;
     });
-    report.latticePoints = points;
-    report.disagreeing = disagreeing;
+    return {points, disagreeing};
 }
 
 }  // namespace
@@ -174,10 +200,22 @@ void finish(BSplineField& field, double floor, double target, int mostPasses, Fi
     progress("fitting", 0.5);
     Repair(field, floor, target).run(mostPasses, result, progress);
     if (report) {
-        countDisagreement(field, result);
+        const Disagreement found = disagreementOf(field, nullptr);
+        result.latticePoints = found.points;
+        result.disagreeing = found.disagreeing;
         *report = result;
     }
     progress("fitting", 1);
+}
+
+PartRepair finishPart(BSplineField& part, double floor, double target, int mostPasses,
+                      const openvdb::CoordBBox& box, const Progress& progress) {
+    PartRepair repair;
+    repair.repaired = Repair(part, floor, target).runPart(mostPasses, box, progress);
+    const Disagreement found = disagreementOf(part, &box);
+    repair.latticePoints = found.points;
+    repair.disagreeing = found.disagreeing;
+    return repair;
 }
 
 }  // namespace isowave::fitting

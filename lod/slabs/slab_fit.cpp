@@ -1,0 +1,106 @@
+#include "lod/slabs/slab_fit.h"
+
+#include <algorithm>
+
+#include "isowave/error.h"
+#include "volume/distance_image.h"
+#include "volume/fit/known.h"
+#include "volume/linear_transform.h"
+#include "volume/nodes_image.h"
+
+namespace isowave::lod {
+namespace {
+
+int passesOf(const Fitting& fitting) {
+    return fitting.method == FitMethod::distance ? fitting.distance.mostRepairPasses
+                                                 : fitting.binary.mostRepairPasses;
+}
+
+BSplineField fitPart(ImageStream& stream, const SlabFitPlan& plan, const LeafBox& box, int passes,
+                     fitting::PartRepair& repair, const Progress& progress) {
+    const int most = std::min(passes, passesOf(plan.fitting));
+    switch (plan.fitting.method) {
+        case FitMethod::distance: {
+            DistanceFitOptions options = plan.fitting.distance;
+            options.mostRepairPasses = most;
+            const auto distance = distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
+            return fitDistancePart(*distance, options, box, repair, progress);
+        }
+        case FitMethod::binary: {
+            BinaryFitOptions options = plan.fitting.binary;
+            options.mostRepairPasses = most;
+            return fitBinaryPart(nodesFromImage(stream, plan.solid, progress), options, box, repair,
+                                 progress);
+        }
+        case FitMethod::mask:
+            break;
+    }
+    throw UsageError("--slabs needs a fit that works on parts; give --fit distance or --fit binary");
+}
+
+bool knowsOutside(const Shape& shape) {
+    for (auto value = shape.cbeginValueOn(); value; ++value)
+        if (!*value) return true;
+    return false;
+}
+
+}  // namespace
+
+SlabSlices slicesOf(const SlabFitPlan& plan, int slab, int passes) {
+    const std::int64_t reach = kFitReach + passes;
+    const LeafBox box = plan.cuts.box(slab);
+    const std::int64_t low = std::max<std::int64_t>(0, box.min().z() - reach) & ~std::int64_t{7};
+    return {low, std::min<std::int64_t>(plan.depth, box.max().z() + 1 + reach)};
+}
+
+BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int passes, SlabFitted& fitted,
+                     const Progress& progress) {
+    const openvdb::Coord first(0, 0, static_cast<int>(slicesOf(plan, slab, passes).z0));
+    LeafBox box = plan.cuts.box(slab);
+    if (slab > 0) box.min() -= first;
+    if (slab + 1 < plan.cuts.count()) box.max() -= first;
+    BSplineField part =
+        partOf(fitPart(stream, plan, box, passes, fitted.repair, progress), box, first);
+    const auto transform = linearTransform(plan.indexToWorld, "image");
+    part.controlPoints->setTransform(transform);
+    part.shape->setTransform(transform->copy());
+    fitted.known = part.controlPoints->evalActiveVoxelBoundingBox();
+    fitted.inside = pointsInside(*part.shape);
+    fitted.outside = knowsOutside(*part.shape);
+    return part;
+}
+
+std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes) {
+    FitReport report;
+    const Fitting& fitting = plan.fitting;
+    const bool byDistance = fitting.method == FitMethod::distance;
+    if (!byDistance) report.filterPasses = fitting.binary.passes;
+    report.repairFloor = byDistance ? fitting::kDistanceFloor / fitting.distance.halfWidth
+                                    : fitting::kBinaryFloor;
+    for (const SlabFitted& slab : slabs) {
+        report.latticePoints += slab.repair.latticePoints;
+        report.disagreeing += slab.repair.disagreeing;
+    }
+    for (int pass = 0; pass < passes; ++pass) {
+        std::int64_t count = 0;
+        for (const SlabFitted& slab : slabs)
+            if (static_cast<std::size_t>(pass) < slab.repair.repaired.size())
+                count += slab.repair.repaired[static_cast<std::size_t>(pass)];
+        report.repairAgreed = count == 0;
+        if (report.repairAgreed) return report;
+        report.repaired += count;
+        ++report.repairPasses;
+    }
+    report.repairAgreed = false;
+    if (passes >= passesOf(fitting)) return report;
+    return std::nullopt;
+}
+
+openvdb::Coord shiftOf(const std::vector<SlabFitted>& slabs) {
+    openvdb::CoordBBox known;
+    for (const SlabFitted& slab : slabs)
+        if (!slab.known.empty()) known.expand(slab.known);
+    return fitting::shiftOf(known);
+}
+
+}  // namespace isowave::lod

@@ -1,0 +1,59 @@
+// Slabs of an image -> parts of its field, each from its own slices and some beyond them.
+//
+// A slab reads kFitReach slices more on either side, and one for each pass of the repair that it makes. How many passes the whole
+// image takes is known once all slabs are there: as many as the first pass in which none of them changed anything. Where the slabs
+// made fewer, they are fitted once more, with more slices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "io/image/stream.h"
+#include "lod/fitting.h"
+#include "lod/slabs/slab_cuts.h"
+#include "volume/fit/fit_part.h"
+#include "volume/image_solid.h"
+
+namespace isowave::lod {
+
+// What every slab is told.
+struct SlabFitPlan {
+    ImageSolid solid;
+    Fitting fitting;
+    SlabCuts cuts;  // of lattice points, which are voxels, along z
+    std::int64_t depth = 0;
+    AffineTransform indexToWorld;  // of the whole image
+    std::function<void(std::int64_t points)> allow = {};  // of distanceFromImage()
+};
+
+inline constexpr int kFirstPasses = 16;  // of the repair. Seen: 5 to 12 for CT, 20 for white noise
+
+// Of a part: what all parts together need.
+struct SlabFitted {
+    fitting::PartRepair repair;
+    openvdb::CoordBBox known;  // of control points; empty where there are none
+    std::int64_t inside = 0;   // lattice points inside
+    bool outside = false;      // whether a known lattice point is outside
+};
+
+// Slices z0 <= z < z1 that a slab reads for so many passes.
+struct SlabSlices {
+    std::int64_t z0, z1;
+};
+SlabSlices slicesOf(const SlabFitPlan& plan, int slab, int passes);
+
+// Lattice point i of the part is voxel i of the image: the origin is not moved yet. stream: shows slicesOf().
+// Throws UsageError for a fit that works on the whole only (Fitting of masks).
+BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int passes, SlabFitted& fitted,
+                     const Progress& progress);
+
+// What the whole image's fit reports; nothing where it takes more passes than these slabs made.
+std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes);
+
+// How the origin moves.
+openvdb::Coord shiftOf(const std::vector<SlabFitted>& slabs);
+
+}  // namespace isowave::lod

@@ -1,0 +1,191 @@
+#include "lod/slabs/slabbed_field.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+
+#include "isowave/error.h"
+#include "volume/fit/known.h"
+#include "volume/linear_transform.h"
+
+namespace isowave::lod {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kWhole = 200'000;  // control points that are no trouble to anybody
+const LeafBox kEverywhere = SlabCuts{}.box(0);
+
+SlabCuts moved(SlabCuts cuts, const openvdb::Coord& shift) {
+    for (int& cut : cuts.at) cut += shift[cuts.axis];
+    return cuts;
+}
+
+// Of the repair: as many as the first slabs turned out to need.
+template <class FitAll>
+FitReport withEnoughPasses(const FitAll& fitAll) {
+    for (int passes = kFirstPasses;; passes *= 2)
+        if (const std::optional<FitReport> report = fitAll(passes)) return *report;
+}
+
+}  // namespace
+
+SlabFolder::SlabFolder(const fs::path& in) {
+    static std::atomic<int> next{0};
+    std::error_code error;
+    fs::create_directories(in.empty() ? fs::path(".") : in, error);
+    do {
+        path_ = in / fmt::format(".isowave-slabs-{}-{}", ::getpid(), next++);
+    } while (!fs::create_directory(path_, error) && !error);
+    if (error)
+        throw OperationError(path_.string(), "cannot be made (" + error.message() +
+                                                 "); slabs are kept there until the job is done");
+}
+
+SlabFolder::~SlabFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+}
+
+SlabbedField::SlabbedField(ImageStream& stream, const SlabFitPlan& plan, int columns, const fs::path& folder,
+                           const Progress& progress)
+    : plan_(plan), folder_(folder), store_(folder_.path()) {
+    const auto ySize = stream.header().size[1];
+    std::vector<SlabFitted> slabs(static_cast<std::size_t>(plan_.cuts.count()));
+    report_ = withEnoughPasses([&](int passes) {
+        extent_ = {};
+        for (int i = 0; i < plan_.cuts.count(); ++i) {
+            const SlabSlices slices = slicesOf(plan_, i, passes);
+            stream.showSlices(slices.z0, slices.z1);
+            const BSplineField part =
+                fitSlab(stream, plan_, i, passes, slabs[static_cast<std::size_t>(i)], progress);
+            K_ = part.K;
+            extent_.add(wavelets::FieldExtent::of(part));
+            store_.putFitted(i, part);
+        }
+        return reportOf(slabs, plan_, passes);
+    });
+    for (const SlabFitted& slab : slabs) {
+        inside_ += slab.inside;
+        outside_ |= slab.outside;
+    }
+    shift_ = shiftOf(slabs);
+    transform_ =
+        fitting::shiftedTransform(*linearTransform(plan_.indexToWorld, "image"), shift_);
+    extent_.box.translate(shift_);
+    grid_ = {moved(plan_.cuts, shift_), moved(SlabCuts::even(1, ySize, columns), shift_)};
+}
+
+bool SlabbedField::hasSurface() const { return inside_ > 0 && outside_ && extent_.controlPoints > 0; }
+
+BSplineField SlabbedField::part(int slab) const {
+    BSplineField part = store_.fitted(slab);
+    if (shift_ != openvdb::Coord(0)) part = partOf(part, kEverywhere, shift_);
+    part.controlPoints->setTransform(transform_->copy());
+    part.shape->setTransform(transform_->copy());
+    return part;
+}
+
+BSplineField SlabbedField::whole() const {
+    std::vector<BSplineField> parts;
+    for (int slab = 0; slab < slabs(); ++slab) parts.push_back(part(slab));
+    return joinedField(parts);
+}
+
+struct SlabbedField::Reached {
+    wavelets::Halved halved;
+    wavelets::FieldExtent extent;
+    std::vector<std::int64_t> details;  // by step
+    std::vector<int> slabs, axes;       // that each step was made in
+    BSplineField field;
+};
+
+SlabbedField::Reached SlabbedField::descendInSlabs(
+    const wavelets::AnalyseOptions& options, const std::function<bool(int)>& isAskedFor,
+    const std::function<void(int, const BSplineField&)>& onStep, bool keep, const Progress& progress) const {
+    Reached reached;
+    reached.extent = extent_;
+    SlabGrid grid = grid_;
+    bool inColumns = false;  // else: as it was fitted
+    const auto whole = [&] {
+        return inColumns ? wholeField(store_, reached.halved.step, grid) : this->whole();
+    };
+    if (onStep && isAskedFor(0)) onStep(0, whole());
+    const auto isEnd = [&](int step) { return isAskedFor(step) || step >= options.maxSteps; };
+    while (reached.halved.step < options.maxSteps && reached.extent.controlPoints > kWhole &&
+           (grid.rows.count() > 1 || grid.columns.count() > 1)) {
+        const SlabPhase phase = phaseFrom(reached.halved.step, options.order, grid, isEnd);
+        if (!inColumns && phase.cut != 2) {
+            for (int slab = 0; slab < slabs(); ++slab) putColumns(store_, 0, slab, part(slab), grid);
+            inColumns = true;
+        }
+        const auto steps = static_cast<std::size_t>(phase.end - phase.first);
+        std::vector<wavelets::FieldExtent> extents(steps);
+        std::vector<std::int64_t> details(steps);
+        for (int slab = 0; slab < phase.slabs(); ++slab) {
+            progress("analysing", double(slab) / phase.slabs());
+            const SlabHalved told =
+                inColumns ? halveSlab(store_, phase, slab, options.order, keep, progress)
+                          : halveSlab(store_, phase, slab, part(slab), options.order, keep, progress);
+            for (std::size_t s = 0; s < steps; ++s) {
+                extents[s].add(told.extents[s]);
+                details[s] += told.details[s];
+            }
+        }
+        for (int row = 0; inColumns && row < grid.rows.count(); ++row)
+            for (int column = 0; column < grid.columns.count(); ++column)
+                store_.forgetField(phase.first, row, column);
+        for (std::size_t s = 0; s < steps; ++s) {
+            const int axis = options.order.axisAfter(reached.halved.step);
+            reached.halved = wavelets::halvedAlong(axis, reached.halved, reached.extent, extents[s]);
+            reached.extent = extents[s];
+            reached.details.push_back(details[s]);
+            reached.slabs.push_back(phase.slabs());
+            reached.axes.push_back(axis);
+        }
+        grid = phase.after;
+        inColumns = true;
+        if (onStep && isAskedFor(phase.end)) onStep(phase.end, whole());
+    }
+    reached.field = whole();
+    return reached;
+}
+
+wavelets::Descent SlabbedField::descend(const wavelets::AnalyseOptions& options,
+                                        const std::function<bool(int step)>& isAskedFor,
+                                        const std::function<void(int step, const BSplineField&)>& onStep,
+                                        const Progress& progress) const {
+    Reached reached = descendInSlabs(options, isAskedFor, onStep, false, progress);
+    wavelets::AnalyseOptions rest = options;
+    rest.from = reached.halved;
+    const int here = reached.halved.step;
+    wavelets::Descent descent =
+        wavelets::descend(std::move(reached.field), rest, progress, [&](int step, const BSplineField& field) {
+            if (onStep && step != here) onStep(step, field);
+        });
+    for (const std::int64_t count : reached.details) descent.coefficientsStored += count;
+    return descent;
+}
+
+wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& progress) const {
+    const Reached reached =
+        descendInSlabs({.order = order}, [](int) { return false; }, {}, true, progress);
+    wavelets::Pyramid rest =
+        wavelets::analyse(reached.field, {.order = order, .from = reached.halved}, progress);
+    std::vector<wavelets::Step> steps;
+    for (int step = 0; step < reached.halved.step; ++step) {
+        std::vector<Shape::Ptr> shapes;
+        std::vector<wavelets::DetailGrid::Ptr> details;
+        for (int slab = 0; slab < reached.slabs[static_cast<std::size_t>(step)]; ++slab) {
+            shapes.push_back(store_.shape(step, slab));
+            details.push_back(store_.details(step, slab));
+        }
+        steps.push_back({reached.axes[static_cast<std::size_t>(step)], joinedShape(shapes), joinedDetails(details)});
+    }
+    steps.insert(steps.end(), rest.steps.begin(), rest.steps.end());
+    rest.steps = std::move(steps);
+    return rest;
+}
+
+}  // namespace isowave::lod

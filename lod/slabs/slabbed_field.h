@@ -1,0 +1,73 @@
+// The field of an image that was fitted in slabs and lies in a folder, slab by slab.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "lod/slabs/slab_fit.h"
+#include "lod/slabs/slab_steps.h"
+
+namespace isowave::lod {
+
+// A folder for a job's slabs, hidden, of a name that no other job has; it goes with everything in it.
+class SlabFolder {
+  public:
+    // in: the folder that it lies in. Throws OperationError where none can be made there.
+    explicit SlabFolder(const std::filesystem::path& in);
+    ~SlabFolder();
+    SlabFolder(const SlabFolder&) = delete;
+    SlabFolder& operator=(const SlabFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+class SlabbedField {
+  public:
+    // Fits slab after slab. columns: slabs along y, between phases. Throws as the fit of the whole does.
+    SlabbedField(ImageStream& stream, const SlabFitPlan& plan, int columns, const std::filesystem::path& folder,
+                 const Progress& progress);
+
+    const FitReport& report() const { return report_; }
+    std::int64_t inside() const { return inside_; }  // lattice points
+    bool hasSurface() const;
+    double K() const { return K_; }
+    // Of step 0.
+    const openvdb::math::Transform& transform() const { return *transform_; }
+    const wavelets::FieldExtent& extent() const { return extent_; }
+    int slabs() const { return plan_.cuts.count(); }
+
+    // Step 0, joined; and a slab of it.
+    BSplineField whole() const;
+    BSplineField part(int slab) const;
+
+    // Comes down in slabs, then, when little is left, with the whole. onStep: is called for the steps that are asked for, and for all
+    // those that the whole makes. keep: pyramid() can be called afterwards.
+    wavelets::Descent descend(const wavelets::AnalyseOptions& options, const std::function<bool(int step)>& isAskedFor,
+                              const std::function<void(int step, const BSplineField&)>& onStep,
+                              const Progress& progress) const;
+    wavelets::Pyramid analyse(const StepOrder& order, const Progress& progress) const;
+
+  private:
+    struct Reached;  // how far slabs came down
+    SlabPhase firstPhase(const StepOrder& order, const std::function<bool(int)>& isAskedFor) const;
+    Reached descendInSlabs(const wavelets::AnalyseOptions& options, const std::function<bool(int)>& isAskedFor,
+                           const std::function<void(int, const BSplineField&)>& onStep, bool keep,
+                           const Progress& progress) const;
+
+    SlabFitPlan plan_;
+    SlabFolder folder_;
+    SlabStore store_;
+    FitReport report_;
+    std::int64_t inside_ = 0;
+    bool outside_ = false;
+    double K_ = 1;
+    openvdb::Coord shift_{0};
+    openvdb::math::Transform::Ptr transform_;
+    wavelets::FieldExtent extent_;
+    SlabGrid grid_;  // of step 0
+};
+
+}  // namespace isowave::lod
