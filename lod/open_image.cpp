@@ -152,12 +152,13 @@ struct SeenImage {
     std::optional<ImageStream> stream;
     ImageStatistics statistics;
     std::optional<float> label;  // as a voxel has it
+    std::vector<float> mask;     // of several labels: their voxels, and the stream is 1 there
 };
 
-// Each of several labels must be there. Leaves a stream that is 1 where one of them is; returns what it was before.
+// Each of several labels must be there. Leaves a stream that is 1 where one of them is, and which voxels these are; returns what it
+// was before.
 ImageStatistics takeLabels(ImageStream& stream, const std::string& name, const std::vector<double>& labels,
-                           const Progress& progress) {
-    std::vector<float> voxels;
+                           std::vector<float>& voxels, const Progress& progress) {
     ImageStatistics statistics;
     for (const double label : labels) {
         const float voxel = voxels.emplace_back(voxelOfLabel(stream.header(), name, label));
@@ -168,7 +169,7 @@ ImageStatistics takeLabels(ImageStream& stream, const std::string& name, const s
                                statistics.distinct.end();
         requireLabel(statistics, name, label);
     }
-    stream.takeAsMask(std::move(voxels));
+    stream.takeAsMask(voxels);
     return statistics;
 }
 
@@ -178,7 +179,7 @@ SeenImage looked(ImageStream stream, const std::string& name, const SolidOptions
         throw UsageError("--label and --iso exclude each other; give one of them");
     SeenImage seen;
     if (!options.labels.empty()) {
-        seen.statistics = takeLabels(stream, name, options.labels, progress);
+        seen.statistics = takeLabels(stream, name, options.labels, seen.mask, progress);
         seen.label = 1.0f;  // of the mask
     } else {
         if (options.label) seen.label = voxelOfLabel(stream.header(), name, *options.label);
@@ -195,6 +196,15 @@ ImageSolid shapeOf(const ImagePlan& plan, const SeenImage& seen, const SolidOpti
     return {.iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
 }
 
+// Size and time of a file, so that nobody goes on with slabs of what it was.
+std::string stampOf(const std::string& name) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(name, error);
+    if (error) return {};
+    const auto size = std::filesystem::is_regular_file(name, error) ? std::filesystem::file_size(name, error) : 0;
+    return fmt::format("{} {} {}", name, size, time.time_since_epoch().count());
+}
+
 constexpr const char* kNoSurface = "the image holds nothing but inside or nothing but outside";
 
 // Grey values do not say how much is inside.
@@ -202,19 +212,20 @@ void putVolume(Solid::State& solid, InputReport::Kind kind, double volume) {
     if (kind != InputReport::Kind::greyImage && !solid.openBorder) solid.input.volume = volume;
 }
 
-void fitInSlabs(Solid::State& solid, ImageStream& stream, const ImageSolid& shape, const Fitting& fitting,
+void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, const Fitting& fitting,
                 const SolidOptions& options, double limit, const Progress& progress, StageClock& clock) {
     const StageClock::Scope scope(clock, "fit");
-    const Image& image = stream.header();
-    SlabFitPlan plan{shape, fitting, SlabCuts::even(2, image.size[2], *options.slabs), image.size[2],
+    const Image image = seen.stream->header();
+    const SlabFitPlan plan{shape, fitting, SlabCuts::even(2, image.size[2], *options.slabs), image.size[2],
                      image.indexToWorld,
                      [&](std::int64_t points) {
                          refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points), limit,
                                         "take more --slabs");
                      }};
-    const auto folder =
-        options.slabFolder.empty() ? std::filesystem::temp_directory_path() : options.slabFolder;
-    solid.slabs = std::make_shared<SlabbedField>(stream, plan, *options.slabs, folder, progress);
+    SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask), stampOf(solid.name())};
+    if (work.folder.empty()) work.folder = std::filesystem::temp_directory_path();
+    solid.slabs =
+        std::make_shared<SlabbedField>(std::move(*seen.stream), plan, *options.slabs, work, progress);
     if (!solid.slabs->hasSurface()) refuseNoSurface(solid.name(), kNoSurface);
     solid.fit = summaryOf(fitting, solid.slabs->report());
     tellDisagreement(solid.slabs->report(), progress);
@@ -242,8 +253,7 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
     };
     const double limit = memoryLimit(options.maxMemory);
     if (options.slabs) {
-        fitInSlabs(solid, *seen.stream, shape, fitting, options, limit, progress, clock);
-        seen.stream.reset();
+        fitInSlabs(solid, std::move(seen), shape, fitting, options, limit, progress, clock);
         putVolume(solid, plan.kind, double(solid.slabs->inside()) * volumeOfVoxel(solid.slabs->transform()));
         return solid;
     }
@@ -320,6 +330,19 @@ std::array<std::array<double, 3>, 3> directionOf(const Image& image) {
         for (double& x : rows[axis]) x /= spacing[axis];
     return rows;
 }
+
+}  // namespace isowave::lod
+
+namespace isowave {
+
+std::string runSlabTask(const std::filesystem::path& image, const SolidOptions& options, const std::string& task,
+                        const Progress& progress) {
+    return lod::runSlabTask(image, lod::imageReadOptions(options), task, progress);
+}
+
+}  // namespace isowave
+
+namespace isowave::lod {
 
 std::string rangeText(const ImageStatistics& statistics) {
     std::string text = fmt::format("{:g} to {:g} (", statistics.low, statistics.high);

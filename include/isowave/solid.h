@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -104,10 +105,14 @@ struct SolidOptions {
     // Bytes that the job may take; default: 70 % of the computer's (or of the container's) memory.
     std::optional<double> maxMemory = {};
 
-    // Images, fit by distance or binary: so many slabs of slices are read, fitted and halved one after the other, and lie in a hidden
-    // folder in between, so that memory is that of a slab. The result is the same to the bit.
+    // ---- in slabs: images, fit by distance or binary
+    // So many slabs of slices are read, fitted and halved by themselves and lie in a folder in between; memory is that of a slab. The
+    // result is the same to the bit.
     std::optional<int> slabs = {};
-    std::filesystem::path slabFolder = {};  // where that folder is made, and removed; default: the system's for temporary files
+    std::filesystem::path slabFolder = {};  // a hidden folder is made in it, and removed; default: the system's for temporary files
+    // Runs tasks elsewhere: for each text what runSlabTask() gives, in order, whatever order they are run in. Then slabFolder itself
+    // is where slabs lie: all workers see it, nobody removes it, and a job that begins again there goes on. progress: of the job.
+    std::function<std::vector<std::string>(const std::vector<std::string>& tasks, const Progress& progress)> slabMap = {};
 };
 
 // What was read, and what was decided about it. What a kind of input does not have is empty.
@@ -209,5 +214,9 @@ ISOWAVE_EXPORT Solid open(const Image& image, const SolidOptions& options = {},
 // The same solid as of an image with these voxels, which are not copied. Of options.image only `nan` has a meaning.
 ISOWAVE_EXPORT Solid open(const VoxelView& voxels, const SolidOptions& options = {},
                           const Progress& progress = {});
+
+// One task of a job in slabs, which options.slabMap was given; image, options: as open() has them. Throws as open() does.
+ISOWAVE_EXPORT std::string runSlabTask(const std::filesystem::path& image, const SolidOptions& options,
+                                       const std::string& task, const Progress& progress = {});
 
 }  // namespace isowave

@@ -64,10 +64,20 @@ BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int
     const auto transform = linearTransform(plan.indexToWorld, "image");
     part.controlPoints->setTransform(transform);
     part.shape->setTransform(transform->copy());
-    fitted.known = part.controlPoints->evalActiveVoxelBoundingBox();
+    fitted.extent = wavelets::FieldExtent::of(part);
+    fitted.K = part.K;
     fitted.inside = pointsInside(*part.shape);
     fitted.outside = knowsOutside(*part.shape);
     return part;
+}
+
+SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                       const Progress& progress) {
+    const SlabSlices slices = slicesOf(plan, slab, passes);
+    stream.showSlices(slices.z0, slices.z1);
+    SlabFitted told;
+    store.putFitted(slab, fitSlab(stream, plan, slab, passes, told, progress));
+    return told;
 }
 
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes) {
@@ -99,7 +109,7 @@ std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const Sl
 openvdb::Coord shiftOf(const std::vector<SlabFitted>& slabs) {
     openvdb::CoordBBox known;
     for (const SlabFitted& slab : slabs)
-        if (!slab.known.empty()) known.expand(slab.known);
+        if (slab.extent.controlPoints > 0) known.expand(slab.extent.box);
     return fitting::shiftOf(known);
 }
 

@@ -14,8 +14,10 @@
 #include "io/image/stream.h"
 #include "lod/fitting.h"
 #include "lod/slabs/slab_cuts.h"
+#include "lod/slabs/slab_store.h"
 #include "volume/fit/fit_part.h"
 #include "volume/image_solid.h"
+#include "wavelets/pyramid.h"
 
 namespace isowave::lod {
 
@@ -34,7 +36,8 @@ inline constexpr int kFirstPasses = 16;  // of the repair. Seen: 5 to 12 for CT,
 // Of a part: what all parts together need.
 struct SlabFitted {
     fitting::PartRepair repair;
-    openvdb::CoordBBox known;  // of control points; empty where there are none
+    wavelets::FieldExtent extent;  // before the origin is moved
+    double K = 1;
     std::int64_t inside = 0;   // lattice points inside
     bool outside = false;      // whether a known lattice point is outside
 };
@@ -49,6 +52,10 @@ SlabSlices slicesOf(const SlabFitPlan& plan, int slab, int passes);
 // Throws UsageError for a fit that works on the whole only (Fitting of masks).
 BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int passes, SlabFitted& fitted,
                      const Progress& progress);
+
+// The task: shows the stream the slab's slices, and puts the part into the store.
+SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                       const Progress& progress);
 
 // What the whole image's fit reports; nothing where it takes more passes than these slabs made.
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "volume/fit/known.h"
+#include "volume/linear_transform.h"
 #include "wavelets/part_direction.h"
 
 namespace isowave::lod {
@@ -42,23 +44,33 @@ SlabPhase phaseFrom(int step, const StepOrder& order, const SlabGrid& grid,
     return phase;
 }
 
-SlabHalved halveSlab(const SlabStore& store, const SlabPhase& phase, int slab, BSplineField part,
-                     const StepOrder& order, bool keep, const Progress& progress) {
+openvdb::math::Transform::Ptr SlabOrigin::transform() const {
+    return fitting::shiftedTransform(*linearTransform(indexToWorld, "image"), shift);
+}
+
+BSplineField fittedPart(const SlabStore& store, int slab, const SlabOrigin& origin) {
+    BSplineField part = store.fitted(slab);
+    if (origin.shift != openvdb::Coord(0)) part = partOf(part, SlabCuts{}.box(0), origin.shift);
+    part.controlPoints->setTransform(origin.transform());
+    part.shape->setTransform(origin.transform());
+    return part;
+}
+
+SlabHalved halveSlab(const SlabStore& store, const SlabHalving& halving, int slab, const Progress& progress) {
+    const SlabPhase& phase = halving.phase;
+    BSplineField part =
+        halving.origin ? fittedPart(store, slab, *halving.origin) : slabOf(store, phase, slab);
     SlabHalved told;
     for (int step = phase.first; step < phase.end; ++step) {
-        wavelets::DirectionResult result = wavelets::analysePart(part, order.axisAfter(step), progress);
+        wavelets::DirectionResult result =
+            wavelets::analysePart(part, halving.order.axisAfter(step), progress);
         told.details.push_back(static_cast<std::int64_t>(result.details->activeVoxelCount()));
-        if (keep) store.putStep(step, slab, part.shape, result.details);
+        if (halving.keep) store.putStep(step, slab, part.shape, result.details);
         part = std::move(result.coarse);
         told.extents.push_back(wavelets::FieldExtent::of(part));
     }
     putSlab(store, phase, slab, part);
     return told;
-}
-
-SlabHalved halveSlab(const SlabStore& store, const SlabPhase& phase, int slab, const StepOrder& order,
-                     bool keep, const Progress& progress) {
-    return halveSlab(store, phase, slab, slabOf(store, phase, slab), order, keep, progress);
 }
 
 void putColumns(const SlabStore& store, int step, int row, const BSplineField& part, const SlabGrid& grid) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "isowave/progress.h"
@@ -33,18 +34,32 @@ struct SlabPhase {
 SlabPhase phaseFrom(int step, const StepOrder& order, const SlabGrid& grid,
                     const std::function<bool(int step)>& isAskedFor);
 
+// What the slabs of the first phase are made of: parts as they were fitted, whose origin is moved now.
+struct SlabOrigin {
+    AffineTransform indexToWorld;
+    openvdb::Coord shift{0};
+
+    openvdb::math::Transform::Ptr transform() const;
+};
+// Step 0 in a slab that was fitted.
+BSplineField fittedPart(const SlabStore& store, int slab, const SlabOrigin& origin);
+
+struct SlabHalving {
+    SlabPhase phase;
+    StepOrder order;
+    bool keep = false;                 // shapes and details
+    std::optional<SlabOrigin> origin;  // of a first phase
+};
+
 // What a slab's task tells.
 struct SlabHalved {
     std::vector<std::int64_t> details;              // of each of the phase's steps
     std::vector<wavelets::FieldExtent> extents;  // of the slab, after each
 };
 
-// The task: the slab's field at phase.first, its steps, and the columns of what comes out. keep: shapes and details are kept, too.
-SlabHalved halveSlab(const SlabStore& store, const SlabPhase& phase, int slab, const StepOrder& order, bool keep,
-                     const Progress& progress);
-// The same, of a field that is not in the store. REQUIRES: the phase's slabs are those of z.
-SlabHalved halveSlab(const SlabStore& store, const SlabPhase& phase, int slab, BSplineField part,
-                     const StepOrder& order, bool keep, const Progress& progress);
+// The task: the slab's field at phase.first, its steps, and the columns of what comes out. REQUIRES: with an origin the phase's
+// slabs are those of z.
+SlabHalved halveSlab(const SlabStore& store, const SlabHalving& halving, int slab, const Progress& progress);
 // Puts a slab of z into columns.
 void putColumns(const SlabStore& store, int step, int row, const BSplineField& part, const SlabGrid& grid);
 

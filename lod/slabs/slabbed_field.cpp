@@ -6,8 +6,6 @@
 #include <atomic>
 
 #include "isowave/error.h"
-#include "volume/fit/known.h"
-#include "volume/linear_transform.h"
 
 namespace isowave::lod {
 namespace {
@@ -15,7 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kWhole = 200'000;  // control points that are no trouble to anybody
-const LeafBox kEverywhere = SlabCuts{}.box(0);
 
 SlabCuts moved(SlabCuts cuts, const openvdb::Coord& shift) {
     for (int& cut : cuts.at) cut += shift[cuts.axis];
@@ -48,44 +45,37 @@ SlabFolder::~SlabFolder() {
     fs::remove_all(path_, error);
 }
 
-SlabbedField::SlabbedField(ImageStream& stream, const SlabFitPlan& plan, int columns, const fs::path& folder,
+SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int columns, const SlabWork& work,
                            const Progress& progress)
-    : plan_(plan), folder_(folder), store_(folder_.path()) {
+    : plan_(plan),
+      hidden_(work.map ? std::optional<SlabFolder>() : std::optional<SlabFolder>(std::in_place, work.folder)),
+      store_(hidden_ ? hidden_->path() : work.folder) {
     const auto ySize = stream.header().size[1];
-    std::vector<SlabFitted> slabs(static_cast<std::size_t>(plan_.cuts.count()));
+    if (work.map)
+        workers_ = std::make_unique<SlabsByMap>(work.map, SlabJob{work.folder, work.image, work.mask});
+    else
+        workers_ = std::make_unique<SlabsInTurn>(std::move(stream), store_);
+    std::vector<SlabFitted> slabs;
     report_ = withEnoughPasses([&](int passes) {
-        extent_ = {};
-        for (int i = 0; i < plan_.cuts.count(); ++i) {
-            const SlabSlices slices = slicesOf(plan_, i, passes);
-            stream.showSlices(slices.z0, slices.z1);
-            const BSplineField part =
-                fitSlab(stream, plan_, i, passes, slabs[static_cast<std::size_t>(i)], progress);
-            K_ = part.K;
-            extent_.add(wavelets::FieldExtent::of(part));
-            store_.putFitted(i, part);
-        }
+        slabs = workers_->fit(plan_, passes, progress);
         return reportOf(slabs, plan_, passes);
     });
+    workers_->endFit();
     for (const SlabFitted& slab : slabs) {
         inside_ += slab.inside;
         outside_ |= slab.outside;
+        extent_.add(slab.extent);
+        K_ = slab.K;
     }
-    shift_ = shiftOf(slabs);
-    transform_ =
-        fitting::shiftedTransform(*linearTransform(plan_.indexToWorld, "image"), shift_);
-    extent_.box.translate(shift_);
-    grid_ = {moved(plan_.cuts, shift_), moved(SlabCuts::even(1, ySize, columns), shift_)};
+    origin_ = {plan_.indexToWorld, shiftOf(slabs)};
+    transform_ = origin_.transform();
+    extent_.box.translate(origin_.shift);
+    grid_ = {moved(plan_.cuts, origin_.shift), moved(SlabCuts::even(1, ySize, columns), origin_.shift)};
 }
 
 bool SlabbedField::hasSurface() const { return inside_ > 0 && outside_ && extent_.controlPoints > 0; }
 
-BSplineField SlabbedField::part(int slab) const {
-    BSplineField part = store_.fitted(slab);
-    if (shift_ != openvdb::Coord(0)) part = partOf(part, kEverywhere, shift_);
-    part.controlPoints->setTransform(transform_->copy());
-    part.shape->setTransform(transform_->copy());
-    return part;
-}
+BSplineField SlabbedField::part(int slab) const { return fittedPart(store_, slab, origin_); }
 
 BSplineField SlabbedField::whole() const {
     std::vector<BSplineField> parts;
@@ -123,16 +113,13 @@ SlabbedField::Reached SlabbedField::descendInSlabs(
         const auto steps = static_cast<std::size_t>(phase.end - phase.first);
         std::vector<wavelets::FieldExtent> extents(steps);
         std::vector<std::int64_t> details(steps);
-        for (int slab = 0; slab < phase.slabs(); ++slab) {
-            progress("analysing", double(slab) / phase.slabs());
-            const SlabHalved told =
-                inColumns ? halveSlab(store_, phase, slab, options.order, keep, progress)
-                          : halveSlab(store_, phase, slab, part(slab), options.order, keep, progress);
+        const SlabHalving halving{phase, options.order, keep,
+                                  inColumns ? std::nullopt : std::optional<SlabOrigin>(origin_)};
+        for (const SlabHalved& told : workers_->halve(halving, progress))
             for (std::size_t s = 0; s < steps; ++s) {
                 extents[s].add(told.extents[s]);
                 details[s] += told.details[s];
             }
-        }
         for (int row = 0; inColumns && row < grid.rows.count(); ++row)
             for (int column = 0; column < grid.columns.count(); ++column)
                 store_.forgetField(phase.first, row, column);

@@ -4,9 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "lod/slabs/slab_fit.h"
 #include "lod/slabs/slab_steps.h"
+#include "lod/slabs/slab_workers.h"
 
 namespace isowave::lod {
 
@@ -24,10 +28,18 @@ class SlabFolder {
     std::filesystem::path path_;
 };
 
+// Where slabs lie, and who works on them.
+struct SlabWork {
+    std::filesystem::path folder;  // of in-turn work the folder that a hidden one is made in; else the one that all workers see
+    SlabMap map = {};              // none: one slab after the other
+    std::vector<float> mask = {};  // values that the stream takes as inside
+    std::string image = {};        // whatever changes when the image does
+};
+
 class SlabbedField {
   public:
-    // Fits slab after slab. columns: slabs along y, between phases. Throws as the fit of the whole does.
-    SlabbedField(ImageStream& stream, const SlabFitPlan& plan, int columns, const std::filesystem::path& folder,
+    // Fits all slabs. columns: slabs along y, between phases. Throws as the fit of the whole does.
+    SlabbedField(ImageStream stream, const SlabFitPlan& plan, int columns, const SlabWork& work,
                  const Progress& progress);
 
     const FitReport& report() const { return report_; }
@@ -44,7 +56,7 @@ class SlabbedField {
     BSplineField part(int slab) const;
 
     // Comes down in slabs, then, when little is left, with the whole. onStep: is called for the steps that are asked for, and for all
-    // those that the whole makes. keep: pyramid() can be called afterwards.
+    // those that the whole makes.
     wavelets::Descent descend(const wavelets::AnalyseOptions& options, const std::function<bool(int step)>& isAskedFor,
                               const std::function<void(int step, const BSplineField&)>& onStep,
                               const Progress& progress) const;
@@ -52,19 +64,19 @@ class SlabbedField {
 
   private:
     struct Reached;  // how far slabs came down
-    SlabPhase firstPhase(const StepOrder& order, const std::function<bool(int)>& isAskedFor) const;
     Reached descendInSlabs(const wavelets::AnalyseOptions& options, const std::function<bool(int)>& isAskedFor,
                            const std::function<void(int, const BSplineField&)>& onStep, bool keep,
                            const Progress& progress) const;
 
     SlabFitPlan plan_;
-    SlabFolder folder_;
+    std::optional<SlabFolder> hidden_;
     SlabStore store_;
+    std::unique_ptr<SlabWorkers> workers_;
     FitReport report_;
     std::int64_t inside_ = 0;
     bool outside_ = false;
     double K_ = 1;
-    openvdb::Coord shift_{0};
+    SlabOrigin origin_;
     openvdb::math::Transform::Ptr transform_;
     wavelets::FieldExtent extent_;
     SlabGrid grid_;  // of step 0

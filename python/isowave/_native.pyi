@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from typing import Any, Optional
 
 import numpy as np
@@ -106,6 +107,15 @@ class Hierarchy:
     def save(self, path: str, shortest: Optional[float], count: Optional[int]) -> None: ...
 
 def open_file(path: str, given: Given, finest_step: int, watch: Optional[Watch]) -> Solid: ...
+def open_in_slabs(
+    path: str,
+    given: Given,
+    slabs: int,
+    folder: str,
+    run: Callable[[list[str], Callable[[float], bool]], Optional[list[str]]],
+    watch: Optional[Watch],
+) -> Solid: ...
+def run_slab_task(path: str, given: Given, task: str, watch: Optional[Watch]) -> str: ...
 def open_voxels(
     array: npt.NDArray[Any], big_endian: bool, affine: list[float], given: Given, watch: Optional[Watch]
 ) -> Solid: ...

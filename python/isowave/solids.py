@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from typing import Any, Optional, Union, overload
+from typing import Any, Callable, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,27 @@ Labels = Union[float, "Sequence[float]"]
 # ---- what comes in
 
 
+class InSlabs:
+    """An image whose slabs others work on; see isowave.distributed."""
+
+    def __init__(self, path: str, slabs: int, folder: str) -> None:
+        self.path, self.slabs, self.folder = path, slabs, folder
+
+    def run(self, options: Given, tasks: list[str], report: Callable[[float], bool]) -> Optional[list[str]]:
+        """What _native.run_slab_task(path, options, ...) gives for each task, in order; None where report(share) was False."""
+        raise NotImplementedError
+
+    def open(self, options: Given, watch: Watch) -> _native.Solid:
+        def run(tasks: list[str], report: Callable[[float], bool]) -> Optional[list[str]]:
+            return self.run(options, tasks, report)
+
+        return _native.open_in_slabs(self.path, options, self.slabs, self.folder, run, watch)
+
+
 def _open(source: Any, faces: Any, geometry: Geometry, options: Given, watch: Watch, finest: int = 0) -> _native.Solid:
+    if isinstance(source, InSlabs):
+        geometry.refuse(f"{source.path} has a place of its own")
+        return source.open(options, watch)
     if isinstance(source, Pyramid):
         geometry.refuse("a pyramid has a place of its own")
         if options:
@@ -513,6 +533,7 @@ def lod(
     # the job
     threads: Optional[int] = None,
     max_memory: Optional[float] = None,
+    slabs: Optional[int] = None,
     progress: Optional[ProgressLike] = None,
     keep_field: bool = True,
 ) -> Ladder:
@@ -566,7 +587,7 @@ def lod(
         iso=iso, label=label, invert=invert, open_border=open_border, nan=nan, voxels=voxels, voxel=voxel,
         close_holes=close_holes, thicken=thicken, unit=unit, fit=fit, half_width=half_width, band=band, volume=volume,
         step_axes=step_axes, size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
-        time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory,
+        time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory, slabs=slabs,
     )  # fmt: skip
     _native.check_ladder_options(making + given(open_border=open_border))
     solid = _open(source, faces, geometry, opening, watch)
@@ -613,6 +634,7 @@ def analyse(
     grid: Optional[str] = None,
     threads: Optional[int] = None,
     max_memory: Optional[float] = None,
+    slabs: Optional[int] = None,
     progress: Optional[ProgressLike] = None,
 ) -> Pyramid:
     """A solid -> its pyramid, from which every step can be had back. Arguments are those of lod() that say what the solid is.
@@ -631,7 +653,7 @@ def analyse(
         iso=iso, label=label, invert=invert, open_border=open_border, nan=nan, voxels=voxels, voxel=voxel,
         close_holes=close_holes, thicken=thicken, unit=unit, fit=fit, half_width=half_width, band=band, volume=volume,
         step_axes=step_axes, size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
-        time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory,
+        time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory, slabs=slabs,
     )  # fmt: skip
     return Pyramid(_native.analyse(_open(source, faces, geometry, opening, watch), watch), watch.remarks)
 

@@ -49,6 +49,41 @@ Solid openFile(const std::filesystem::path& path, const GivenOptions& given, int
     return watched(watch, [&](const Progress& progress) { return open(path, choices.solid, progress); });
 }
 
+// A Python object that may go on a thread without the GIL.
+std::shared_ptr<py::object> held(py::object object) {
+    return {new py::object(std::move(object)), [](py::object* o) {
+                const py::gil_scoped_acquire acquire;
+                delete o;
+            }};
+}
+
+// run(tasks, report): what the tasks tell, in order; None where report(share) said False, which asks to stop.
+Solid openInSlabs(const std::filesystem::path& path, const GivenOptions& given, int slabs,
+                  const std::filesystem::path& folder, py::object run, const py::object& watch) {
+    SolidChoices choices(given);
+    choices.solid.slabs = slabs;
+    choices.solid.slabFolder = folder;
+    choices.solid.slabMap = [run = held(std::move(run))](const std::vector<std::string>& tasks,
+                                                         const Progress& progress) {
+        const py::gil_scoped_acquire acquire;
+        const py::cpp_function report([&progress](double share) {
+            if (progress.report) progress.report("slabs", share);
+            return !(progress.stopRequested && progress.stopRequested());
+        });
+        const py::object told = (*run)(tasks, report);
+        if (told.is_none()) throw Cancelled();
+        return told.cast<std::vector<std::string>>();
+    };
+    return watched(watch, [&](const Progress& progress) { return open(path, choices.solid, progress); });
+}
+
+std::string slabTask(const std::filesystem::path& path, const GivenOptions& given, const std::string& task,
+                     const py::object& watch) {
+    const SolidChoices choices(given);
+    return watched(watch,
+                   [&](const Progress& progress) { return runSlabTask(path, choices.solid, task, progress); });
+}
+
 Solid openVoxels(const py::array& array, bool bigEndian, const std::vector<double>& affine,
                  const GivenOptions& given, const py::object& watch) {
     const SolidChoices choices(given);
@@ -75,6 +110,8 @@ void bindSolid(py::module_& module) {
         .def_property_readonly("is_pyramid", &Solid::isPyramid);
     module.def("open_file", openFile);
     module.def("open_voxels", openVoxels);
+    module.def("open_in_slabs", openInSlabs);
+    module.def("run_slab_task", slabTask);
     module.def("open_triangles", openTriangles);
     module.def("solid_of", solidOf);
     module.def("solid_option_names", solidOptionNames);
