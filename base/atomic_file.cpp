@@ -68,7 +68,7 @@ AtomicFile::~AtomicFile() {
     std::filesystem::remove(temporary_, ignored);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(bool wait) {
     errno = 0;
     if (!stream_ || buffer_.pubsync() != 0 || !buffer_.close())
         throw OperationError(place_.string(), std::string("writing failed (") + std::strerror(errno) +
@@ -76,7 +76,7 @@ void AtomicFile::commit() {
     committed_ = direct_;
     if (direct_) return;
     // Data on the disk before the name: a power cut must not leave an empty file under the good name.
-    if (!buffer_.waitForDisk())
+    if (wait && !buffer_.waitForDisk())
         throw OperationError(place_.string(),
                              std::string("writing failed (") + std::strerror(errno) + "); is the disk full?");
     std::error_code error;

@@ -27,8 +27,9 @@ class AtomicFile {
     const std::filesystem::path& place() const { return place_; }
 
     // Flushes to the disk, closes, renames. Throws OperationError and leaves the place untouched when the
-    // disk is full or the rename fails.
-    void commit();
+    // disk is full or the rename fails. wait: false for what is made again if the power fails: the name may then be there without
+    // all of the bytes.
+    void commit(bool wait = true);
 
   private:
     // Gathers small writes, and starts write-back while the rest of the file is still being computed:

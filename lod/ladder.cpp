@@ -207,7 +207,7 @@ std::int64_t controlPointsOf(const Solid& solid) {
 }
 
 PyramidCounts descendSolid(Solid solid, const StepChoice& choice, Maker& maker, const Progress& progress,
-                          StageClock& clock) {
+                           StageClock& clock) {
     const StageClock::Scope scope(clock, "analyse");
     wavelets::AnalyseOptions options{.order = solid.order()};
     if (choice.lastVisited()) options.maxSteps = *choice.lastVisited();

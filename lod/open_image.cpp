@@ -13,6 +13,7 @@
 #include "lod/slabs/slabbed_field.h"
 #include "lod/source.h"
 #include "volume/distance.h"
+#include "volume/distance/crossing_band.h"
 
 namespace isowave::lod {
 namespace {
@@ -201,7 +202,8 @@ std::string stampOf(const std::string& name) {
     std::error_code error;
     const auto time = std::filesystem::last_write_time(name, error);
     if (error) return {};
-    const auto size = std::filesystem::is_regular_file(name, error) ? std::filesystem::file_size(name, error) : 0;
+    const auto size =
+        std::filesystem::is_regular_file(name, error) ? std::filesystem::file_size(name, error) : 0;
     return fmt::format("{} {} {}", name, size, time.time_since_epoch().count());
 }
 
@@ -212,16 +214,33 @@ void putVolume(Solid::State& solid, InputReport::Kind kind, double volume) {
     if (kind != InputReport::Kind::greyImage && !solid.openBorder) solid.input.volume = volume;
 }
 
+// A slab's fit must not depend on what lies far away.
+void checkSlabs(const Fitting& fitting) {
+    if (fitting.method == FitMethod::mask)
+        throw UsageError(
+            "--slabs: the fit of masks and labels works on the whole, each of its 60 passes on what the last "
+            "one made beside it; "
+            "give --fit distance or --fit binary");
+    if (fitting.method == FitMethod::distance && fitting.distance.halfWidth > CrossingDistances::kReach)
+        throw UsageError(
+            fmt::format("--slabs: distances are known {} voxels far; take --half-width {} or less",
+                        CrossingDistances::kReach, CrossingDistances::kReach));
+}
+
 void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, const Fitting& fitting,
                 const SolidOptions& options, double limit, const Progress& progress, StageClock& clock) {
+    checkSlabs(fitting);
     const StageClock::Scope scope(clock, "fit");
     const Image image = seen.stream->header();
-    const SlabFitPlan plan{shape, fitting, SlabCuts::even(2, image.size[2], *options.slabs), image.size[2],
-                     image.indexToWorld,
-                     [&](std::int64_t points) {
-                         refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points), limit,
-                                        "take more --slabs");
-                     }};
+    const SlabFitPlan plan{shape,
+                           fitting,
+                           SlabCuts::even(2, image.size[2], *options.slabs),
+                           image.size[2],
+                           image.indexToWorld,
+                           [&](std::int64_t points) {
+                               refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points),
+                                              limit, "take more --slabs");
+                           }};
     SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask), stampOf(solid.name())};
     if (work.folder.empty()) work.folder = std::filesystem::temp_directory_path();
     solid.slabs =
@@ -335,8 +354,8 @@ std::array<std::array<double, 3>, 3> directionOf(const Image& image) {
 
 namespace isowave {
 
-std::string runSlabTask(const std::filesystem::path& image, const SolidOptions& options, const std::string& task,
-                        const Progress& progress) {
+std::string runSlabTask(const std::filesystem::path& image, const SolidOptions& options,
+                        const std::string& task, const Progress& progress) {
     return lod::runSlabTask(image, lod::imageReadOptions(options), task, progress);
 }
 

@@ -79,7 +79,8 @@ wavelets::Descent descendFrom(Solid solid, const wavelets::AnalyseOptions& optio
                               const std::function<void(int step, const BSplineField&)>& onStep,
                               const Progress& progress) {
     const auto asked = [&](int step) { return isAskedFor && isAskedFor(step); };
-    if (const auto slabs = SolidAccess::of(solid).slabs) return slabs->descend(options, asked, onStep, progress);
+    if (const auto slabs = SolidAccess::of(solid).slabs)
+        return slabs->descend(options, asked, onStep, progress);
     return wavelets::descend(SolidAccess::takeField(std::move(solid)), options, progress, onStep);
 }
 

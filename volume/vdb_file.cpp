@@ -448,8 +448,10 @@ void writeContent(AtomicFile& file, const openvdb::GridCPtrVec& grids, openvdb::
 
 }  // namespace
 
-void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
-              const openvdb::MetaMap& metadata) {
+namespace {
+
+void writeWhole(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                const openvdb::MetaMap& metadata, bool wait) {
     initializeVdb();
     AtomicFile file(path);
     try {
@@ -457,7 +459,19 @@ void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gri
     } catch (const std::ios_base::failure&) {
         throw OperationError(path.string(), "writing failed; is the disk full? Nothing was left behind");
     }
-    file.commit();
+    file.commit(wait);
+}
+
+}  // namespace
+
+void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+              const openvdb::MetaMap& metadata) {
+    writeWhole(path, grids, metadata, true);
+}
+
+void writeVdbForNow(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                    const openvdb::MetaMap& metadata) {
+    writeWhole(path, grids, metadata, false);
 }
 
 void writeField(const std::filesystem::path& path, const BSplineField& field) {

@@ -53,6 +53,9 @@ class VdbParts {
 // threads; beyond the grids it takes 16 MB at most, whatever their size.
 void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
               const openvdb::MetaMap& metadata = {});
+// The same for what is read again soon: nobody waits for the disk. After a power cut readers find the file damaged.
+void writeVdbForNow(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                    const openvdb::MetaMap& metadata = {});
 
 // The field as one FloatGrid named "field" (control points; metadata isowave:K), for vdb tools, Houdini,
 // Blender.

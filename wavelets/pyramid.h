@@ -45,7 +45,8 @@ struct Pyramid {
 // How far a field has come down.
 struct Halved {
     int step = 0;
-    int unchanged = 0;  // a bit for each axis whose halving changed neither domain nor size since something last changed
+    int unchanged =
+        0;  // a bit for each axis whose halving changed neither domain nor size since something last changed
 };
 
 // Of a field: what tells whether a step changes anything. Domains end at 64 control points, or at a size that halving does not
@@ -65,7 +66,7 @@ Halved halvedAlong(int axis, Halved halved, const FieldExtent& from, const Field
 
 struct AnalyseOptions {
     StepOrder order = {};
-    Halved from = {};  // what the field is; steps are counted from there
+    Halved from = {};        // what the field is; steps are counted from there
     int maxSteps = 1 << 20;  // stop after so many steps, or when one node (4^3 control points) is left
 };
 

@@ -109,10 +109,12 @@ struct SolidOptions {
     // So many slabs of slices are read, fitted and halved by themselves and lie in a folder in between; memory is that of a slab. The
     // result is the same to the bit.
     std::optional<int> slabs = {};
-    std::filesystem::path slabFolder = {};  // a hidden folder is made in it, and removed; default: the system's for temporary files
+    std::filesystem::path slabFolder =
+        {};  // a hidden folder is made in it, and removed; default: the system's for temporary files
     // Runs tasks elsewhere: for each text what runSlabTask() gives, in order, whatever order they are run in. Then slabFolder itself
     // is where slabs lie: all workers see it, nobody removes it, and a job that begins again there goes on. progress: of the job.
-    std::function<std::vector<std::string>(const std::vector<std::string>& tasks, const Progress& progress)> slabMap = {};
+    std::function<std::vector<std::string>(const std::vector<std::string>& tasks, const Progress& progress)>
+        slabMap = {};
 };
 
 // What was read, and what was decided about it. What a kind of input does not have is empty.

@@ -57,10 +57,10 @@ struct ImageStream::State {
     };
 
     std::string name;
-    Image header;                // of the slices that are shown
-    std::int64_t first = 0;      // of these, in the source
+    Image header;                    // of the slices that are shown
+    std::int64_t first = 0;          // of these, in the source
     std::array<double, 3> origin{};  // of slice 0 of the source
-    std::int64_t depth = 0;      // slices of the source
+    std::int64_t depth = 0;          // slices of the source
     std::int64_t wantedSlices = 0;
     SourcePtr source;  // null for an image in memory
     ValueType type = ValueType::float32;
@@ -152,7 +152,8 @@ struct ImageStream::State {
         const auto* values = std::get_if<std::span<const float>>(&slab.voxels);
         if (!values || slab.zero) return;
         NotFinite here;
-        here.countIn(values->data(), static_cast<std::int64_t>(values->size()), (first + slab.z0) * sliceVoxels());
+        here.countIn(values->data(), static_cast<std::int64_t>(values->size()),
+                     (first + slab.z0) * sliceVoxels());
         if (here.count == 0) return;
         const std::lock_guard lock(mutex);
         notFinite.add(here);

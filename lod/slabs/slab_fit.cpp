@@ -23,7 +23,8 @@ BSplineField fitPart(ImageStream& stream, const SlabFitPlan& plan, const LeafBox
         case FitMethod::distance: {
             DistanceFitOptions options = plan.fitting.distance;
             options.mostRepairPasses = most;
-            const auto distance = distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
+            const auto distance =
+                distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
             return fitDistancePart(*distance, options, box, repair, progress);
         }
         case FitMethod::binary: {
@@ -59,8 +60,7 @@ BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int
     LeafBox box = plan.cuts.box(slab);
     if (slab > 0) box.min() -= first;
     if (slab + 1 < plan.cuts.count()) box.max() -= first;
-    BSplineField part =
-        partOf(fitPart(stream, plan, box, passes, fitted.repair, progress), box, first);
+    BSplineField part = partOf(fitPart(stream, plan, box, passes, fitted.repair, progress), box, first);
     const auto transform = linearTransform(plan.indexToWorld, "image");
     part.controlPoints->setTransform(transform);
     part.shape->setTransform(transform->copy());
@@ -71,8 +71,8 @@ BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int
     return part;
 }
 
-SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
-                       const Progress& progress) {
+SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab,
+                       int passes, const Progress& progress) {
     const SlabSlices slices = slicesOf(plan, slab, passes);
     stream.showSlices(slices.z0, slices.z1);
     SlabFitted told;
@@ -85,8 +85,8 @@ std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const Sl
     const Fitting& fitting = plan.fitting;
     const bool byDistance = fitting.method == FitMethod::distance;
     if (!byDistance) report.filterPasses = fitting.binary.passes;
-    report.repairFloor = byDistance ? fitting::kDistanceFloor / fitting.distance.halfWidth
-                                    : fitting::kBinaryFloor;
+    report.repairFloor =
+        byDistance ? fitting::kDistanceFloor / fitting.distance.halfWidth : fitting::kBinaryFloor;
     for (const SlabFitted& slab : slabs) {
         report.latticePoints += slab.repair.latticePoints;
         report.disagreeing += slab.repair.disagreeing;

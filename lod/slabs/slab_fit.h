@@ -27,7 +27,7 @@ struct SlabFitPlan {
     Fitting fitting;
     SlabCuts cuts;  // of lattice points, which are voxels, along z
     std::int64_t depth = 0;
-    AffineTransform indexToWorld;  // of the whole image
+    AffineTransform indexToWorld;                         // of the whole image
     std::function<void(std::int64_t points)> allow = {};  // of distanceFromImage()
 };
 
@@ -38,8 +38,8 @@ struct SlabFitted {
     fitting::PartRepair repair;
     wavelets::FieldExtent extent;  // before the origin is moved
     double K = 1;
-    std::int64_t inside = 0;   // lattice points inside
-    bool outside = false;      // whether a known lattice point is outside
+    std::int64_t inside = 0;  // lattice points inside
+    bool outside = false;     // whether a known lattice point is outside
 };
 
 // Slices z0 <= z < z1 that a slab reads for so many passes.
@@ -54,8 +54,8 @@ BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int
                      const Progress& progress);
 
 // The task: shows the stream the slab's slices, and puts the part into the store.
-SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
-                       const Progress& progress);
+SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab,
+                       int passes, const Progress& progress);
 
 // What the whole image's fit reports; nothing where it takes more passes than these slabs made.
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes);

@@ -53,7 +53,7 @@ struct SlabHalving {
 
 // What a slab's task tells.
 struct SlabHalved {
-    std::vector<std::int64_t> details;              // of each of the phase's steps
+    std::vector<std::int64_t> details;           // of each of the phase's steps
     std::vector<wavelets::FieldExtent> extents;  // of the slab, after each
 };
 

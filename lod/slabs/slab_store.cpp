@@ -35,9 +35,10 @@ typename Grid::Ptr gridOf(const fs::path& path, VdbParts& parts, const char* nam
 void writePart(const fs::path& path, const BSplineField& part) {
     openvdb::MetaMap meta;
     meta.insertMeta(kK, openvdb::DoubleMetadata(part.K));
-    writeVdb(path,
-             {named<openvdb::FloatGrid>(part.controlPoints, kControlPoints), named<Shape>(part.shape, kShape)},
-             meta);
+    writeVdbForNow(
+        path,
+        {named<openvdb::FloatGrid>(part.controlPoints, kControlPoints), named<Shape>(part.shape, kShape)},
+        meta);
 }
 
 BSplineField readPart(const fs::path& path) {
@@ -85,8 +86,8 @@ BSplineField SlabStore::field(int step, int row, int column) const {
 
 void SlabStore::putStep(int step, int slab, const Shape::Ptr& shape,
                         const wavelets::DetailGrid::Ptr& details) const {
-    writeVdb(stepPath(step, slab),
-             {named<Shape>(shape, kShape), named<wavelets::DetailGrid>(details, kDetails)});
+    writeVdbForNow(stepPath(step, slab),
+                   {named<Shape>(shape, kShape), named<wavelets::DetailGrid>(details, kDetails)});
 }
 Shape::Ptr SlabStore::shape(int step, int slab) const {
     const fs::path path = stepPath(step, slab);

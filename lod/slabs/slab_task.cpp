@@ -80,12 +80,15 @@ SlabFitPlan planOf(const Json& j) {
 
 Json jsonOf(const SlabHalving& halving) {
     const SlabPhase& phase = halving.phase;
-    Json j{{"first", phase.first},        {"end", phase.end},
-           {"cut", phase.cut},            {"before", jsonOf(phase.before)},
-           {"after", jsonOf(phase.after)}, {"order", wavelets::textOf(halving.order)},
-           {"keep", halving.keep},        {"origin", Json()}};
-    if (halving.origin)
-        j["origin"] = {jsonOf(halving.origin->indexToWorld), jsonOf(halving.origin->shift)};
+    Json j{{"first", phase.first},
+           {"end", phase.end},
+           {"cut", phase.cut},
+           {"before", jsonOf(phase.before)},
+           {"after", jsonOf(phase.after)},
+           {"order", wavelets::textOf(halving.order)},
+           {"keep", halving.keep},
+           {"origin", Json()}};
+    if (halving.origin) j["origin"] = {jsonOf(halving.origin->indexToWorld), jsonOf(halving.origin->shift)};
     return j;
 }
 SlabHalving halvingOf(const Json& j) {
@@ -101,10 +104,14 @@ SlabHalving halvingOf(const Json& j) {
 }
 
 Json jsonOf(const SlabFitted& told) {
-    return {{"repaired", told.repair.repaired},       {"lattice_points", told.repair.latticePoints},
-            {"disagreeing", told.repair.disagreeing}, {"control_points", told.extent.controlPoints},
-            {"known", jsonOf(told.extent.box)},       {"inside", told.inside},
-            {"outside", told.outside},                {"K", told.K}};
+    return {{"repaired", told.repair.repaired},
+            {"lattice_points", told.repair.latticePoints},
+            {"disagreeing", told.repair.disagreeing},
+            {"control_points", told.extent.controlPoints},
+            {"known", jsonOf(told.extent.box)},
+            {"inside", told.inside},
+            {"outside", told.outside},
+            {"K", told.K}};
 }
 SlabFitted fittedOf(const Json& j) {
     SlabFitted told;
@@ -121,8 +128,7 @@ SlabFitted fittedOf(const Json& j) {
 
 Json jsonOf(const SlabHalved& told) {
     Json extents = Json::array();
-    for (const auto& extent : told.extents)
-        extents.push_back(Json{extent.controlPoints, jsonOf(extent.box)});
+    for (const auto& extent : told.extents) extents.push_back(Json{extent.controlPoints, jsonOf(extent.box)});
     return {{"details", told.details}, {"extents", extents}};
 }
 SlabHalved halvedOf(const Json& j) {
@@ -136,30 +142,33 @@ SlabHalved halvedOf(const Json& j) {
 // ---- tasks
 
 std::string taskOf(const SlabJob& job, const char* kind, int slab, const Json& what) {
-    return Json{{"task", kind},        {"folder", job.folder.string()}, {"image", job.image},
-                {"mask", job.mask},    {"slab", slab},                  {"what", what}}
+    return Json{{"task", kind},       {"folder", job.folder.string()},
+                {"image", job.image}, {"mask", job.mask},
+                {"slab", slab},       {"what", what}}
         .dump();
 }
 
 Json parsed(const std::string& text, const char* what) {
     Json json = Json::parse(text, nullptr, false);
     if (!json.is_object())
-        throw InputError(what, "is not what a task of a job in slabs tells; all workers need one version of "
-                               "isowave");
+        throw InputError(what,
+                         "is not what a task of a job in slabs tells; all workers need one version of "
+                         "isowave");
     return json;
 }
 
 template <class Told, class Of>
 std::vector<Told> toldBy(const std::vector<std::string>& texts, std::size_t wanted, const Of& of) {
     if (texts.size() != wanted)
-        throw OperationError("slabs", fmt::format("{} tasks were given away and {} came back", wanted,
-                                                  texts.size()));
+        throw OperationError("slabs",
+                             fmt::format("{} tasks were given away and {} came back", wanted, texts.size()));
     std::vector<Told> told;
     for (const std::string& text : texts) {
         try {
             told.push_back(of(parsed(text, "slabs")));
         } catch (const Json::exception&) {
-            throw InputError("slabs", "a worker's answer lacks a part; all workers need one version of isowave");
+            throw InputError("slabs",
+                             "a worker's answer lacks a part; all workers need one version of isowave");
         }
     }
     return told;

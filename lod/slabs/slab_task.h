@@ -27,7 +27,7 @@ std::vector<SlabFitted> fittedOf(const std::vector<std::string>& told, std::size
 std::vector<SlabHalved> halvedOf(const std::vector<std::string>& told, std::size_t wanted);
 
 // options: of the image, as the job has them. Throws as ImageStream and the fit do, InputError for a text that is no task.
-std::string runSlabTask(const std::filesystem::path& path, const ImageReadOptions& options, const std::string& task,
-                        const Progress& progress);
+std::string runSlabTask(const std::filesystem::path& path, const ImageReadOptions& options,
+                        const std::string& task, const Progress& progress);
 
 }  // namespace isowave::lod

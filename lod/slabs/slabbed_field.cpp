@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kWhole = 200'000;  // control points that are no trouble to anybody
+constexpr std::int64_t kWhole =
+    20'000;  // control points that are no trouble to anybody; a step leaves half of them at least
 
 SlabCuts moved(SlabCuts cuts, const openvdb::Coord& shift) {
     for (int& cut : cuts.at) cut += shift[cuts.axis];
@@ -156,8 +157,8 @@ wavelets::Descent SlabbedField::descend(const wavelets::AnalyseOptions& options,
 }
 
 wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& progress) const {
-    const Reached reached =
-        descendInSlabs({.order = order}, [](int) { return false; }, {}, true, progress);
+    const Reached reached = descendInSlabs(
+        {.order = order}, [](int) { return false; }, {}, true, progress);
     wavelets::Pyramid rest =
         wavelets::analyse(reached.field, {.order = order, .from = reached.halved}, progress);
     std::vector<wavelets::Step> steps;
@@ -168,7 +169,8 @@ wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& 
             shapes.push_back(store_.shape(step, slab));
             details.push_back(store_.details(step, slab));
         }
-        steps.push_back({reached.axes[static_cast<std::size_t>(step)], joinedShape(shapes), joinedDetails(details)});
+        steps.push_back(
+            {reached.axes[static_cast<std::size_t>(step)], joinedShape(shapes), joinedDetails(details)});
     }
     steps.insert(steps.end(), rest.steps.begin(), rest.steps.end());
     rest.steps = std::move(steps);

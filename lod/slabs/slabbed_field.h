@@ -30,7 +30,8 @@ class SlabFolder {
 
 // Where slabs lie, and who works on them.
 struct SlabWork {
-    std::filesystem::path folder;  // of in-turn work the folder that a hidden one is made in; else the one that all workers see
+    std::filesystem::path
+        folder;  // of in-turn work the folder that a hidden one is made in; else the one that all workers see
     SlabMap map = {};              // none: one slab after the other
     std::vector<float> mask = {};  // values that the stream takes as inside
     std::string image = {};        // whatever changes when the image does
@@ -57,14 +58,16 @@ class SlabbedField {
 
     // Comes down in slabs, then, when little is left, with the whole. onStep: is called for the steps that are asked for, and for all
     // those that the whole makes.
-    wavelets::Descent descend(const wavelets::AnalyseOptions& options, const std::function<bool(int step)>& isAskedFor,
+    wavelets::Descent descend(const wavelets::AnalyseOptions& options,
+                              const std::function<bool(int step)>& isAskedFor,
                               const std::function<void(int step, const BSplineField&)>& onStep,
                               const Progress& progress) const;
     wavelets::Pyramid analyse(const StepOrder& order, const Progress& progress) const;
 
   private:
     struct Reached;  // how far slabs came down
-    Reached descendInSlabs(const wavelets::AnalyseOptions& options, const std::function<bool(int)>& isAskedFor,
+    Reached descendInSlabs(const wavelets::AnalyseOptions& options,
+                           const std::function<bool(int)>& isAskedFor,
                            const std::function<void(int, const BSplineField&)>& onStep, bool keep,
                            const Progress& progress) const;
 

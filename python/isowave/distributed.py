@@ -20,7 +20,7 @@ import shutil
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Optional, TypeVar, Union
 
 from . import _native
 from ._meshes import PathLike
@@ -34,6 +34,7 @@ from .solids import lod as _lod
 __all__ = ["analyse", "lod"]
 
 _LOOK = 0.1  # seconds
+_Made = TypeVar("_Made")
 
 
 def _run(path: str, options: Given, task: str) -> str:
@@ -119,8 +120,8 @@ def _image_of(source: Any, folder: Path, axes: str, spacing: Optional[Sequence[f
     return str(store)
 
 
-def _job(make: Callable[..., Any], source: Any, client: Any, out: Union[str, PathLike], slabs: Optional[int], axes: str,
-         spacing: Optional[Sequence[float]], origin: Optional[Sequence[float]], arguments: dict[str, Any]) -> Any:  # fmt: skip
+def _job(make: Callable[..., _Made], source: Any, client: Any, out: Union[str, PathLike], slabs: Optional[int], axes: str,
+         spacing: Optional[Sequence[float]], origin: Optional[Sequence[float]], arguments: dict[str, Any]) -> _Made:  # fmt: skip
     threads = _check(client)
     folder = Path(out).absolute() / ".slabs"
     folder.mkdir(parents=True, exist_ok=True)

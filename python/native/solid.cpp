@@ -80,8 +80,8 @@ Solid openInSlabs(const std::filesystem::path& path, const GivenOptions& given, 
 std::string slabTask(const std::filesystem::path& path, const GivenOptions& given, const std::string& task,
                      const py::object& watch) {
     const SolidChoices choices(given);
-    return watched(watch,
-                   [&](const Progress& progress) { return runSlabTask(path, choices.solid, task, progress); });
+    return watched(
+        watch, [&](const Progress& progress) { return runSlabTask(path, choices.solid, task, progress); });
 }
 
 Solid openVoxels(const py::array& array, bool bigEndian, const std::vector<double>& affine,

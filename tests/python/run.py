@@ -8,7 +8,8 @@ import subprocess
 import sys
 
 DEBIAN = {"numpy": "python3-numpy", "pytest": "python3-pytest", "nibabel": "python3-nibabel", "mypy": "mypy",
-          "setuptools": "python3-setuptools", "pip": "python3-pip", "wheel": "python3-wheel"}
+          "setuptools": "python3-setuptools", "pip": "python3-pip", "wheel": "python3-wheel",
+          "dask": "python3-dask", "distributed": "python3-distributed", "zarr": "python3-zarr"}
 
 
 def main() -> int:

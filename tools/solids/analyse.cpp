@@ -68,7 +68,8 @@ int Analyse::runParts(Console& console) const {
 
 std::string Analyse::write(const Part& part, const Progress& progress) const {
     OutputFile out(part.output);
-    const Pyramid pyramid = analyse(open(part.input, solid_, progress), progress);
+    const Pyramid pyramid =
+        analyse(open(part.input, withSlabsBeside(solid_, part.output), progress), progress);
     pyramid.save(part.output);
     out.commit();
     const std::int64_t points = pyramid.controlPoints(), stored = pyramid.coefficientsStored();

@@ -42,7 +42,7 @@ class FieldCommand : public Command {
         step_.check();
         if (hold_ == Holding::none) step_.limitReading(solid_);
         OutputFile out(*output_);
-        Solid solid = open(arguments[0], solid_, console.progress());
+        Solid solid = open(arguments[0], withSlabsBeside(solid_, *output_), console.progress());
         const int step = step_.of(solid);
         const Field field = made(std::move(solid), step, console.progress());
         field.save(*output_);

@@ -321,7 +321,7 @@ MeshNames Lod::namesIn(const OutputFolder& out) const {
 
 Made Lod::make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
                const Progress& progress) const {
-    Solid solid = open(input, solid_, progress);
+    Solid solid = open(input, withSlabsBeside(solid_, out.folder()), progress);
     const std::string unit = unitShown(solid);
     const MeshWriteOptions options{space_.of(solid), metresPerUnitOf(solid)};
     MeshWriter writer{.names = names,

@@ -60,7 +60,7 @@ class MeshCommand : public Command {
     // Returns what there is to tell of the mesh.
     std::string write(const Part& part, MeshFormat format, const Progress& progress) const {
         OutputFile out(part.output);
-        Solid solid = open(part.input, solid_, progress);
+        Solid solid = open(part.input, withSlabsBeside(solid_, part.output), progress);
         const Space space = space_.of(solid);
         const double metresPerUnit = metresPerUnitOf(solid);
         const int step = step_.of(solid);

@@ -54,8 +54,8 @@ class Pack : public Command {
         openJson();
         OutputFile out(*output_);
         PackStory story{arguments[0].string(), output_->string(), how_, {}};
-        story.report =
-            pack(open(arguments[0], solid_, console.progress()), *output_, how_, console.progress());
+        story.report = pack(open(arguments[0], withSlabsBeside(solid_, *output_), console.progress()),
+                            *output_, how_, console.progress());
         out.commit();
         tell(console, textOf(story), jsonOf(story));
         return 0;

@@ -179,6 +179,12 @@ void declareMaxMemory(OptionList& options, SolidOptions& solid) {
                   [&](const std::string& v) { solid.slabs = static_cast<int>(integer(v, 1, 4096)); });
 }
 
+SolidOptions withSlabsBeside(const SolidOptions& solid, const std::filesystem::path& output) {
+    SolidOptions result = solid;
+    result.slabFolder = std::filesystem::absolute(output).parent_path();
+    return result;
+}
+
 void declareMesh(OptionList& options, LevelOptions& level, bool features) {
     options.value("--refine", "1|2|4", "chosen by each level",
                   "samples of a node along each axis: more triangles, closer to the spline. Without it a "

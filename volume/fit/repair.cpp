@@ -47,7 +47,8 @@ class Repair {
         });
     }
 
-    std::vector<std::int64_t> runPart(int mostPasses, const openvdb::CoordBBox& box, const Progress& progress) {
+    std::vector<std::int64_t> runPart(int mostPasses, const openvdb::CoordBBox& box,
+                                      const Progress& progress) {
         std::vector<std::int64_t> repaired;
         passes(mostPasses, progress,
                [&](const Changes& changes) { repaired.push_back(countIn(changes, &box)); });

@@ -1,0 +1,193 @@
+// Images in slabs: the same field, pyramid and levels as of the whole, to the bit.
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "isowave/openvdb.h"
+#include "isowave/pyramid.h"
+#include "lod/pyramid_state.h"
+#include "lod/slabs/slab_cuts.h"
+#include "lod/solid_state.h"
+#include "tests/lod/solids.h"
+#include "tests/temp_folder.h"
+
+namespace isowave::lod_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A gyroid whose walls are 5 voxels thick, that touches all borders of the image.
+Image gyroid(Size size) {
+    return imageOf(size, [](int x, int y, int z) {
+        const double k = 0.32, a = k * x, b = k * y, c = k * z;
+        const double g = std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a);
+        return std::lround(200 * std::clamp(0.6 - std::abs(g), -1.0, 1.0));
+    });
+}
+const Image& largeGyroid() {
+    static const Image image = gyroid({64, 56, 90});
+    return image;
+}
+
+// Independent voxels: the repair takes the most passes.
+Image noise(Size size) {
+    std::mt19937 random(7);
+    return imageOf(size, [&](int, int, int) { return random() % 2 ? 100 : -100; });
+}
+
+std::string bytesOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+class Slabs : public ::testing::Test {
+  protected:
+    SolidOptions in(int slabs, SolidOptions options = {.iso = 0}) const {
+        options.slabs = slabs;
+        options.slabFolder = folder.path();
+        return options;
+    }
+    std::string pyramidOf(const Image& image, const SolidOptions& options) const {
+        analyse(open(image, options)).save(folder / "p.vdb");
+        return bytesOf(folder / "p.vdb");
+    }
+    void expectSame(const Image& image, const SolidOptions& options, const std::vector<int>& counts) const {
+        const std::string whole = pyramidOf(image, options);
+        for (const int slabs : counts) EXPECT_EQ(pyramidOf(image, in(slabs, options)), whole) << slabs;
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1) << "slabs are gone";
+    }
+    test::TempFolder folder;
+};
+
+TEST(SlabCuts, LieBetweenLeavesAndAreHalvedWithTheLattice) {
+    const lod::SlabCuts cuts = lod::SlabCuts::even(2, 90, 4);
+    EXPECT_THAT(cuts.at, ElementsAre(24, 48, 64));
+    EXPECT_THAT(cuts.halved().at, ElementsAre(16, 24, 32));
+    EXPECT_THAT(cuts.halved().halved().at, ElementsAre(8, 16));
+    EXPECT_THAT(lod::SlabCuts::even(2, 17, 100).at, ElementsAre(8, 16));
+    EXPECT_EQ(cuts.box(1).min().z(), 24);
+    EXPECT_EQ(cuts.box(1).max().z(), 47);
+}
+
+TEST_F(Slabs, GiveThePyramidOfTheWholeToTheByte) { expectSame(largeGyroid(), {.iso = 0}, {1, 2, 5, 400}); }
+
+TEST_F(Slabs, GiveItForEveryWayToSayWhatIsInside) {
+    expectSame(largeGyroid(), {.iso = 0, .invert = true}, {4});
+    expectSame(largeGyroid(), {.iso = 0, .openBorder = true}, {4});
+    expectSame(largeGyroid(), {.iso = 50, .halfWidth = 3.5, .band = 3}, {4});
+    expectSame(largeGyroid(), {.iso = 0, .fit = FitMethod::binary}, {4});
+    const Image mask =
+        imageOf({40, 44, 60}, [](int x, int y, int z) { return (x / 9 + y / 7 + z / 11) % 3; });
+    expectSame(mask, {.labels = {1, 2}, .fit = FitMethod::distance}, {3});
+    expectSame(mask, {.label = 2, .fit = FitMethod::binary}, {3});
+}
+
+TEST_F(Slabs, GiveItForVoxelsThatAreNoCubesAndForEveryFirstAxis) {
+    Image flat = largeGyroid();
+    flat.indexToWorld.axis[2][2] = 4;
+    expectSame(flat, {.iso = 0}, {3});
+    flat.indexToWorld.axis[2][2] = 0.25;
+    expectSame(flat, {.iso = 0}, {3});  // z alone is halved first
+}
+
+TEST_F(Slabs, AreFittedAgainWhereTheRepairReachesFartherThanTheySaw) {
+    const Image image = noise({24, 20, 64});
+    const auto fit = open(image, {.iso = 0, .fit = FitMethod::binary}).fit();
+    const auto inSlabs = open(image, in(4, {.iso = 0, .fit = FitMethod::binary})).fit();
+    EXPECT_GE(fit->repairPasses, 16) << "what is seen at first does not tell that there is no more to do";
+    EXPECT_EQ(inSlabs->repairPasses, fit->repairPasses);
+    expectSame(image, {.iso = 0, .fit = FitMethod::binary}, {4});
+}
+
+TEST_F(Slabs, GiveTheSameLevelsAndReports) {
+    const LevelOptions levels{.levels = StepRange{0, 2}};
+    const Ladder whole = makeLadder(open(largeGyroid(), {.iso = 0}), levels),
+                 parts = makeLadder(open(largeGyroid(), in(5)), levels);
+    ASSERT_EQ(parts.levels.size(), whole.levels.size());
+    for (std::size_t i = 0; i < whole.levels.size(); ++i) {
+        EXPECT_EQ(parts.levels[i].mesh.points, whole.levels[i].mesh.points);
+        EXPECT_EQ(parts.levels[i].mesh.triangles, whole.levels[i].mesh.triangles);
+    }
+    EXPECT_EQ(parts.steps, whole.steps);
+    EXPECT_EQ(parts.coefficientsStored, whole.coefficientsStored);
+    EXPECT_EQ(parts.controlPoints, whole.controlPoints);
+    EXPECT_EQ(parts.fit->repaired, whole.fit->repaired);
+    EXPECT_EQ(parts.fit->latticePoints, whole.fit->latticePoints);
+    EXPECT_EQ(parts.K, whole.K);
+}
+
+TEST_F(Slabs, TheirTasksMayRunInAnyOrderAndTwice) {
+    const fs::path image = folder / "gyroid.nrrd";
+    const Image& values = largeGyroid();
+    tools_test::writeNrrd(image, {64, 56, 90},
+                          std::vector<float>(values.values.begin(), values.values.end()));
+    int run = 0;
+    SolidOptions options = in(5);
+    fs::create_directory(folder / "slabs");
+    options.slabFolder = folder / "slabs";
+    const auto reversed = [&](const std::vector<std::string>& tasks, const Progress& progress) {
+        std::vector<std::string> told(tasks.size());
+        for (std::size_t i = tasks.size(); i-- > 0; ++run) {
+            told[i] = runSlabTask(image, options, tasks[i], progress);
+            EXPECT_EQ(runSlabTask(image, options, tasks[i], progress), told[i]);
+        }
+        return told;
+    };
+    SolidOptions mapped = options;
+    mapped.slabMap = reversed;
+    analyse(open(image, mapped)).save(folder / "mapped.vdb");
+    analyse(open(image, {.iso = 0})).save(folder / "whole.vdb");
+    EXPECT_EQ(bytesOf(folder / "mapped.vdb"), bytesOf(folder / "whole.vdb"));
+    EXPECT_GE(run, 10);
+
+    // A job that begins again goes on: what is told is there, although the task's files are not made again.
+    const auto before = fs::last_write_time(folder / "slabs" / "fit_0.vdb");
+    analyse(open(image, mapped)).save(folder / "again.vdb");
+    EXPECT_EQ(fs::last_write_time(folder / "slabs" / "fit_0.vdb"), before);
+    EXPECT_EQ(bytesOf(folder / "again.vdb"), bytesOf(folder / "whole.vdb"));
+}
+
+std::string refusal(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST_F(Slabs, AreRefusedForFitsThatNeedTheWhole) {
+    const Image mask = imageOf({20, 20, 20}, [](int x, int y, int z) { return x + y + z > 25 && x > 3; });
+    EXPECT_THAT(refusal([&] { open(mask, in(2, {})); }), HasSubstr("give --fit distance or --fit binary"));
+    EXPECT_THAT(refusal([&] { open(largeGyroid(), in(2, {.iso = 0, .halfWidth = 6})); }),
+                HasSubstr("take --half-width 4 or less"));
+    EXPECT_THAT(refusal([&] { open(ringMesh(), in(2, {})); }), HasSubstr("--slabs has no meaning for mesh"));
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST_F(Slabs, SayWhatIsWrongWithATask) {
+    const fs::path image = folder / "gyroid.nrrd";
+    EXPECT_THAT(refusal([&] { runSlabTask(image, {}, "no task"); }), HasSubstr("one version of isowave"));
+    EXPECT_THAT(refusal([&] { runSlabTask(image, {}, R"({"task": "fit"})"); }), HasSubstr("lacks a part"));
+    SolidOptions options = in(2);
+    options.slabMap = [](const auto&, const Progress&) { return std::vector<std::string>{"{}"}; };
+    EXPECT_THAT(refusal([&] { open(largeGyroid(), options); }),
+                HasSubstr("2 tasks were given away and 1 came back"));
+}
+
+TEST_F(Slabs, LeaveNothingBehindWhenTheyAreStopped) {
+    const Progress stop{.report = {}, .stopRequested = [&] {
+                            return std::any_of(fs::directory_iterator(folder.path()),
+                                               fs::directory_iterator(),
+                                               [](const auto& entry) { return !fs::is_empty(entry.path()); });
+                        }};
+    EXPECT_THROW(open(largeGyroid(), in(4), stop), Cancelled);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace isowave::lod_test
