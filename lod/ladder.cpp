@@ -303,7 +303,7 @@ std::string vanishedText(const Solid& solid, int step, const Progress& progress)
     for (int before = step - 1; state.pyramid && before >= 0; --before) {
         if (!lod::hasSurface(lod::fieldOf(*state.pyramid, before, solid.input().path, progress))) continue;
         const std::optional<int> level = state.order.levelOf(before);
-        return gone + fmt::format("step {}{} is the last that has some of it", before,
+        return gone + fmt::format("take step {}{} or an earlier one", before,
                                   level ? fmt::format(" (level {})", *level) : "");
     }
     return gone + "take a smaller one";
