@@ -10,6 +10,7 @@
 #include "isowave/error.h"
 #include "lod/budgets.h"
 #include "lod/field_state.h"
+#include "lod/fit_solid.h"
 #include "lod/level_mesher.h"
 #include "lod/pyramid_state.h"
 #include "lod/source.h"
@@ -298,6 +299,20 @@ Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOp
 
 namespace {
 
+// What to take instead of a step at which nothing is left. Coarse fields of a pyramid are small; of another solid each would have to be
+// made from level 0.
+std::string vanishedText(const Solid& solid, int step, const Progress& progress) {
+    const Solid::State& state = SolidAccess::of(solid);
+    const std::string gone = fmt::format("the whole solid has vanished at step {}; ", step);
+    for (int before = step - 1; state.pyramid && before >= 0; --before) {
+        if (!lod::hasSurface(lod::fieldOf(*state.pyramid, before, solid.input().path, progress))) continue;
+        const std::optional<int> level = state.order.levelOf(before);
+        return gone + fmt::format("take step {}{} or an earlier one", before,
+                                  level ? fmt::format(" (level {})", *level) : "");
+    }
+    return gone + "take a smaller one";
+}
+
 // One step as the ladder has it.
 lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, const Progress& progress) {
     const std::string name = solid.input().path;
@@ -312,9 +327,7 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
     for (const int before : mesher.stepsBefore(step))
         mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));
     lod::LevelMesh made = mesher.make(step, field);
-    if (made.mesh.triangles.empty())
-        throw InputError(name,
-                         fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
+    if (made.mesh.triangles.empty()) throw InputError(name, vanishedText(solid, step, progress));
     lod::putField(made.report, field);
     if (options.deviation) lod::putDeviation(made.report, made, progress);
     made.report.seconds = clock.secondsSoFar() - begin;

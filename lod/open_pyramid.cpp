@@ -1,5 +1,6 @@
 #include "lod/open_pyramid.h"
 
+#include "lod/option_checks.h"
 #include "lod/packing/pack.h"
 #include "lod/source.h"
 #include "wavelets/pyramid_file.h"
@@ -12,6 +13,8 @@ using Source = std::map<std::string, std::string>;
 // Puts the solid's field or pyramid in, and returns what its file says of where it came from.
 Source read(const std::filesystem::path& path, const SolidOptions& options, const Progress& progress,
             Solid::State& solid) {
+    requireAtLeast("finestStep", options.finestStep, 0);
+    requireAtLeast("finestLevel", options.finestLevel, 0);
     if (!compress::isPackedPath(path)) {
         const int finest =
             options.finestLevel ? wavelets::readOrder(path).stepOf(*options.finestLevel) : options.finestStep;

@@ -56,8 +56,9 @@ StepOrder orderFor(const std::array<double, 3>& spacing, const SolidOptions& opt
 }
 
 std::string tooFarText(int step, int count, const StepOrder& order) {
-    return fmt::format("has steps 0 to {} (levels 0 to {}), not step {}", count, order.levelUpTo(count),
-                       step);
+    const std::optional<int> level = order.levelOf(step);
+    return fmt::format("has steps 0 to {} (levels 0 to {}), not step {}{}", count, order.levelUpTo(count),
+                       step, level ? fmt::format(" (level {})", *level) : "");
 }
 
 BSplineField fieldOf(const wavelets::Pyramid& pyramid, int step, const std::string& name,

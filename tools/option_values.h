@@ -39,6 +39,7 @@ std::array<std::int64_t, 3> wholeTriple(const std::string& text, const char* exa
 
 // Coordinates have 32 bits, so there are not more halvings; a larger number is a slip of the keyboard.
 inline constexpr int kMostSteps = 10'000;
+inline constexpr double kBytesPerGigabyte = 1e9;
 inline constexpr std::int64_t kHuge = std::int64_t{1} << 40;
 
 // A,B,C

@@ -120,7 +120,10 @@ void readOrder(const std::string& file, const openvdb::MetaMap& metadata, Pyrami
     const auto text = metaValue<std::string>(file, metadata, kFirstLevels);
     const std::optional<StepOrder> order = orderOf(text);
     if (!order)
-        throw InputError(file, fmt::format("the first levels are '{}', expected axes such as 'xy xy'", text));
+        throw InputError(
+            file,
+            fmt::format("the first levels are '{}', expected axes such as 'xy xy', at most {} levels of them",
+                        text, kMostHalvings));
     for (int step = 0; step < pyramid.stepCount(); ++step)
         if (const int axis = pyramid.steps[static_cast<std::size_t>(step)].axis;
             axis != order->axisAfter(step))

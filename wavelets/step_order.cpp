@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // of a ratio of edges that were measured along oblique axes
 constexpr int kAllAxes = 3;
-constexpr std::size_t kMostRounds = 32;  // coordinates have 32 bits
+constexpr int kNoLevel = 1 << 30;  // a step that no solid has; sums of it and a few steps stay numbers
 
 double ratioOf(const std::array<double, 3>& voxel) {
     const auto [least, most] = std::minmax_element(voxel.begin(), voxel.end());
@@ -45,7 +46,7 @@ int stepsOf(const std::vector<std::string>& levels) {
 StepOrder StepOrder::forVoxels(const std::array<double, 3>& spacing, double factor) {
     StepOrder order;
     std::array<double, 3> voxel = spacing;
-    while (ratioOf(voxel) >= factor * (1 - kRounding) && order.first.size() < kMostRounds) {
+    while (ratioOf(voxel) >= factor * (1 - kRounding) && order.first.size() < wavelets::kMostHalvings) {
         const std::string one = shortestAxes(voxel, 1), two = shortestAxes(voxel, 2);
         const double ofOne = ratioOf(halvedOn(voxel, one)), ofTwo = ratioOf(halvedOn(voxel, two));
         const std::string& axes = ofTwo < ofOne * (1 - kRounding) ? two : one;
@@ -67,8 +68,11 @@ int StepOrder::axisAfter(int step) const {
 }
 
 int StepOrder::stepOf(int level) const {
+    assert(level >= 0);
     const int early = std::min(level, static_cast<int>(first.size()));
-    return stepsOf({first.begin(), first.begin() + early}) + kAllAxes * (level - early);
+    const std::int64_t later = std::int64_t(kAllAxes) * (level - early);
+    return static_cast<int>(
+        std::min<std::int64_t>(stepsOf({first.begin(), first.begin() + early}) + later, kNoLevel));
 }
 
 int StepOrder::levelUpTo(int step) const {
@@ -88,15 +92,21 @@ std::optional<int> StepOrder::levelOf(int step) const {
 
 std::array<int, 3> StepOrder::halvings(int step) const {
     std::array<int, 3> times{};
-    for (int s = 0; s < step; ++s) ++times[static_cast<std::size_t>(axisAfter(s))];
+    int s = 0;
+    const int early = std::min(step, stepsOf(first));
+    for (; s < early; ++s) ++times[static_cast<std::size_t>(axisAfter(s))];
+    for (int& n : times) n += (step - early) / kAllAxes;
+    for (s += (step - early) / kAllAxes * kAllAxes; s < step; ++s)
+        ++times[static_cast<std::size_t>(axisAfter(s))];
     return times;
 }
 
 int StepOrder::levelOfVoxel(double longest) const {
     assert(longest >= 1);
+    const double most = std::min(longest, std::numeric_limits<double>::max());  // 2^1024 is infinite
     const auto fits = [&](int level) {
         const std::array<int, 3> times = halvings(stepOf(level));
-        return std::ldexp(1.0, *std::max_element(times.begin(), times.end())) <= longest;
+        return std::ldexp(1.0, *std::max_element(times.begin(), times.end())) <= most;
     };
     int level = 0;
     while (fits(level + 1)) ++level;
@@ -115,14 +125,14 @@ std::optional<StepOrder> orderOf(std::string_view text) {
     StepOrder order;
     std::string axes;
     for (const char c : std::string(text) + ' ') {
-        if (c >= 'x' && c <= 'z')
+        if (c >= 'x' && c <= 'z' && axes.find(c) == std::string::npos)
             axes += c;
         else if (c == ' ' && !axes.empty())
             order.first.push_back(std::exchange(axes, {}));
         else if (!text.empty())
             return std::nullopt;
     }
-    if (static_cast<std::size_t>(stepsOf(order.first)) > kMostFirstSteps) return std::nullopt;
+    if (order.first.size() > kMostHalvings) return std::nullopt;
     return order;
 }
 

@@ -16,8 +16,9 @@ namespace isowave::wavelets {
 // The first levels, "xy xy"; empty where every level halves x, y and z.
 std::string textOf(const StepOrder& order);
 
-// The way back. Nothing for a text that is none, or has more than kMostFirstSteps axes.
-inline constexpr std::size_t kMostFirstSteps = 96;
+// The way back. Nothing for a text that is none, that names an axis twice in a level ("xx"), or has more than kMostHalvings levels:
+// coordinates have 32 bits.
+inline constexpr std::size_t kMostHalvings = 32;
 std::optional<StepOrder> orderOf(std::string_view text);
 
 }  // namespace isowave::wavelets

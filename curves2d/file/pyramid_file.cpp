@@ -15,7 +15,7 @@
 namespace isowave::curves2d {
 namespace {
 
-constexpr SectionFormat kFormat{"ISOWAVEC", 1, "pyramid of curves",
+constexpr SectionFormat kFormat{"ISOWAVEC", kPyramidFormatVersion, "pyramid of curves",
                                 "isowave curves INPUT --pyramid FILE.iwc -o FOLDER", "write it again"};
 constexpr std::uint32_t kHead = 1, kRows = 2, kPredicted = 3, kPlain = 4;
 // Of K: far beyond what a fit makes, far below what overflows.

@@ -9,6 +9,7 @@
 //   u64 disagreeing, u32 repair passes, u32 1 where the repair agreed, f64 its floor, u64 repaired
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@
 #include "isowave/curves.h"
 
 namespace isowave::curves2d {
+
+inline constexpr std::uint32_t kPyramidFormatVersion = 1;
 
 // By its name: .iwc.
 bool isPyramidPath(const std::filesystem::path& path);

@@ -128,6 +128,8 @@ struct EditingOptions {
     // Where EditAdd's or EditCut's tool meets the solid's surface, the edge becomes a fillet of this radius, world units, above 0;
     // nothing: as sharp as level 0 can have it.
     std::optional<double> blend = {};
+    // Bytes that a tool may take; default: 70 % of the computer's (or of the container's) memory.
+    std::optional<double> maxMemory = {};
     // Makes the mesh of every step and counts those that are closed, oriented and 2-manifold. Takes as long as all steps' meshes.
     bool checkSteps = false;
 };
@@ -161,7 +163,7 @@ struct EditedPyramid {
 };
 
 // Throws UsageError: no edits, a level that the pyramid does not have, numbers that make no sense; InputError: a tool that misses the
-// solid, an edit that changes nothing or removes everything, a mesh that is open or too large, a field of another lattice;
+// solid, or would not fit into memory, an edit that changes nothing or removes everything, a mesh that is open or too large, a field of another lattice;
 // Cancelled. REQUIRES: a pyramid that was opened from step 0 on.
 ISOWAVE_EXPORT EditedPyramid edit(const Pyramid& pyramid, const std::vector<Edit>& edits,
                                   const EditingOptions& options = {}, const Progress& progress = {});

@@ -46,14 +46,14 @@ struct ISOWAVE_EXPORT StepOrder {
 
     // 0, 1, 2: the axis whose halving leads from this step to the next one.
     int axisAfter(int step) const;
-    int stepOf(int level) const;
+    int stepOf(int level) const;  // level >= 0; at most 2^30, which no solid has
     // Nothing for a step between two levels.
     std::optional<int> levelOf(int step) const;
     // The coarsest level that is not coarser than the step.
     int levelUpTo(int step) const;
     // How often each axis has been halved: a voxel of the step is 2^n times as long.
     std::array<int, 3> halvings(int step) const;
-    // The coarsest level whose voxel is on no axis longer than so many voxels of level 0, >= 1.
+    // The coarsest level whose voxel is on no axis longer than so many voxels of level 0, >= 1. Infinity counts as the largest number.
     int levelOfVoxel(double longest) const;
 
     friend bool operator==(const StepOrder&, const StepOrder&) = default;

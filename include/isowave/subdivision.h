@@ -493,6 +493,10 @@ class ReliefDetails {
   public:
     // Throws InputError: no such file, of another version, truncated, damaged.
     ISOWAVE_EXPORT static ReliefDetails load(const std::filesystem::path& path);
+    // Of ReliefReport::details. name: stands in messages.
+    ISOWAVE_EXPORT static ReliefDetails read(std::string_view bytes, const std::string& name);
+    ISOWAVE_EXPORT const std::string& scheme() const;
+    ISOWAVE_EXPORT int levels() const;
     // level_K of `relief`, as it is written without --limit.
     ISOWAVE_EXPORT Grid coarseHeights() const;
     // Throws InputError for edited heights of another size, and what reconstruct() throws.

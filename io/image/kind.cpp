@@ -7,6 +7,7 @@
 #include "io/image/formats/mrc.h"
 #include "io/image/formats/nifti.h"
 #include "io/image/header.h"
+#include "io/picture/jpeg.h"
 #include "io/picture/tiff.h"
 
 namespace isowave::imageio {
@@ -25,6 +26,7 @@ FileKind kindByContent(const fs::path& path) {
     if (text.size() > 131 && text.compare(128, 4, "DICM") == 0) return FileKind::dicom;
     if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::png;
     if (isTiff(text)) return FileKind::tiff;
+    if (isJpeg(text)) return FileKind::jpeg;
     return looksLikeDicom(path) ? FileKind::dicom : FileKind::none;  // without a preamble
 }
 
@@ -49,6 +51,8 @@ const std::vector<ImageFormat>& imageFormats() {
         {FileKind::zarr, "OME-Zarr", {".zarr"}, false, false},
         {FileKind::tiff, "TIFF", {".tif", ".tiff"}, false, false},
         {FileKind::png, "PNG", {".png"}, false, false},
+        {FileKind::bmp, "BMP", {".bmp"}, false, false},
+        {FileKind::jpeg, "JPEG", {".jpg", ".jpeg"}, false, false},
         {FileKind::dicom, "DICOM", {".dcm", ".dicom"}, false, false},
     };
     return formats;

@@ -8,7 +8,7 @@
 
 namespace isowave::imageio {
 
-enum class FileKind { none, nifti, nrrd, meta, mgh, mrc, npy, vti, zarr, tiff, png, dicom };
+enum class FileKind { none, nifti, nrrd, meta, mgh, mrc, npy, vti, zarr, tiff, png, bmp, jpeg, dicom };
 
 // The one list of formats: readers, messages, help and documentation go by it.
 struct ImageFormat {

@@ -69,21 +69,41 @@ std::map<FileKind, std::vector<fs::path>> filesByKind(Iterator files) {
     return result;
 }
 
+std::string_view nameOf(FileKind kind) {
+    const auto is = [kind](const ImageFormat& format) { return format.kind == kind; };
+    return std::find_if(imageFormats().begin(), imageFormats().end(), is)->name;
+}
+
+// Those of the one kind that is there; null where there is none. Beside TIFF and PNG there may be a BMP or JPEG: scanners put a preview
+// there.
+const std::vector<fs::path>* slicesAmong(const fs::path& folder,
+                                         const std::map<FileKind, std::vector<fs::path>>& files) {
+    for (const auto& [kind, other] :
+         {std::pair{FileKind::tiff, FileKind::png}, {FileKind::bmp, FileKind::jpeg}}) {
+        const auto these = files.find(kind), others = files.find(other);
+        if (these != files.end() && others != files.end())
+            throw InputError(folder.string(), fmt::format("holds {} {} and {} {} slices; expected one kind",
+                                                          others->second.size(), nameOf(other),
+                                                          these->second.size(), nameOf(kind)));
+        if (these != files.end()) return &these->second;
+        if (others != files.end()) return &others->second;
+    }
+    return nullptr;
+}
+
 // Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
 SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     if (isZarr(folder)) return openZarr(folder, options);
-    auto files = filesByKind(fs::directory_iterator(folder));
-    const std::size_t png = files[FileKind::png].size(), tiff = files[FileKind::tiff].size();
-    if (files[FileKind::dicom].empty() && png == 0 && tiff == 0)
-        files = filesByKind(fs::recursive_directory_iterator(folder));
-    if (!files[FileKind::dicom].empty()) return openDicomFolder(folder, files[FileKind::dicom], options);
-    if (png > 0 && tiff > 0)
-        throw InputError(folder.string(),
-                         fmt::format("holds {} PNG and {} TIFF slices; expected one kind", png, tiff));
-    if (png + tiff == 0)
-        throw InputError(folder.string(),
-                         foreignText(folder).value_or("is a folder without DICOM, TIFF or PNG slices"));
-    return openSliceFiles(folder, png > 0 ? files[FileKind::png] : files[FileKind::tiff], options);
+    const auto here = filesByKind(fs::directory_iterator(folder));
+    if (const auto dicom = here.find(FileKind::dicom); dicom != here.end())
+        return openDicomFolder(folder, dicom->second, options);
+    if (const std::vector<fs::path>* slices = slicesAmong(folder, here))
+        return openSliceFiles(folder, *slices, options);
+    const auto below = filesByKind(fs::recursive_directory_iterator(folder));
+    if (const auto dicom = below.find(FileKind::dicom); dicom != below.end())
+        return openDicomFolder(folder, dicom->second, options);
+    throw InputError(folder.string(), foreignText(folder).value_or(
+                                          "is a folder without DICOM, TIFF, PNG, BMP or JPEG slices"));
 }
 
 SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 
@@ -10,6 +12,8 @@
 #include "io/image/formats/stored_volume.h"
 #include "io/image/kind.h"
 #include "io/image/tiff/stack.h"
+#include "io/picture/bmp.h"
+#include "io/picture/jpeg.h"
 #include "io/picture/png.h"
 #include "isowave/error.h"
 
@@ -26,14 +30,11 @@ struct Slice {
     std::function<void(void*)> read;  // its voxels
 };
 
-// What the bytes of a PNG say of its one slice.
-Header pngHeader(const fs::path& path, const Picture& picture) {
-    if (picture.channels != 1)
-        throwNotScalar(path,
-                       picture.channels == 3   ? "RGB"
-                       : picture.channels == 4 ? "RGBA"
-                                               : "scalar",
-                       picture.channels);
+[[noreturn]] void throwColours(const fs::path& path, int channels) {
+    throwNotScalar(path, channels == 3 ? "RGB" : channels == 4 ? "RGBA" : "scalar", channels);
+}
+
+Header headerOf(const Picture& picture) {
     Header header;
     header.type = picture.type;
     header.size = {picture.width, picture.height, 1};
@@ -44,10 +45,41 @@ Header pngHeader(const fs::path& path, const Picture& picture) {
 
 Slice openPngSlice(const fs::path& path) {
     const auto bytes = std::make_shared<const std::string>(readFile(path, "a slice"));
-    return {"PNG", pngHeader(path, readPngHeader(*bytes, path.string())), [bytes, path](void* out) {
+    const Picture header = readPngHeader(*bytes, path.string());
+    if (header.channels != 1) throwColours(path, header.channels);
+    return {"PNG", headerOf(header), [bytes, path](void* out) {
                 const Picture picture = readPng(*bytes, path.string());
                 std::memcpy(out, picture.samples.data(), picture.samples.size());
             }};
+}
+
+// Grey values of a picture of colours that are none: red, green and blue differ by no more than `most`.
+Picture greyOf(const Picture& picture, const fs::path& path, int most) {
+    if (picture.channels == 1) return picture;
+    Picture grey = picture;
+    grey.channels = 1;
+    grey.isColour = grey.hasOpacity = false;
+    grey.samples.resize(static_cast<std::size_t>(picture.width * picture.height));
+    const auto colours = picture.as<std::uint8_t>();
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    for (std::size_t k = 0; k < grey.samples.size(); ++k) {
+        const auto rgb = colours.subspan(k * channels, 3);
+        const auto [least, greatest] = std::minmax({rgb[0], rgb[1], rgb[2]});
+        if (greatest - least > most) throwColours(path, 3);
+        grey.samples[k] = std::byte(std::lround(0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2]));
+    }
+    return grey;
+}
+
+// BMP and JPEG are read whole: what they hold is known then.
+Slice openWholeSlice(const fs::path& path, FileKind kind) {
+    constexpr int kGreyOfJpeg = 8;  // of 255: colour differences are rounded on their own
+    const std::string bytes = readFile(path, "a slice"), name = path.string();
+    const auto picture = std::make_shared<const Picture>(
+        kind == FileKind::bmp ? greyOf(readBmp(bytes, name), path, 0)
+                              : greyOf(readJpeg(bytes, name), path, kGreyOfJpeg));
+    return {kind == FileKind::bmp ? "BMP" : "JPEG", headerOf(*picture),
+            [picture](void* out) { std::memcpy(out, picture->samples.data(), picture->samples.size()); }};
 }
 
 Slice openTiffSlice(const fs::path& path, const ImageReadOptions& options) {
@@ -57,7 +89,9 @@ Slice openTiffSlice(const fs::path& path, const ImageReadOptions& options) {
 
 Slice openSlice(const fs::path& path, const ImageReadOptions& options) {
     if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a slice");
-    return kindOf(path) == FileKind::png ? openPngSlice(path) : openTiffSlice(path, options);
+    const FileKind kind = kindOf(path);
+    if (kind == FileKind::bmp || kind == FileKind::jpeg) return openWholeSlice(path, kind);
+    return kind == FileKind::png ? openPngSlice(path) : openTiffSlice(path, options);
 }
 
 class SlicesSource : public VoxelSource {
@@ -94,7 +128,7 @@ class SlicesSource : public VoxelSource {
     ImageReadOptions options_;
 };
 
-// PNG and most TIFF slices say at most how large a pixel is; a voxel is taken to be as high as it is wide.
+// Pictures, but for some TIFF, say at most how large a pixel is; a voxel is taken to be as high as it is wide.
 void assumeHeight(Header& header) {
     header.hasZSpacing = false;
     header.spacing[2] = header.spacing[0];
@@ -103,8 +137,8 @@ void assumeHeight(Header& header) {
 }  // namespace
 
 SourcePtr openPictureFile(const fs::path& path, const ImageReadOptions& options) {
-    if (kindOf(path) == FileKind::png) {
-        const Header flat = openPngSlice(path).header;
+    if (kindOf(path) != FileKind::tiff) {
+        const Header flat = openSlice(path, options).header;
         throwFlat(path, flat.size[0], flat.size[1], kGiveFolder);
     }
     SourcePtr stack = openTiffStack(path, options);
@@ -127,7 +161,11 @@ SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& sl
     source->header = first.header;
     source->header.format = first.format + " slices";
     source->header.size[2] = static_cast<std::int64_t>(slices.size());
-    if (first.format == "PNG" || !first.header.hasZSpacing) assumeHeight(source->header);
+    if (first.format != "TIFF" || !first.header.hasZSpacing) assumeHeight(source->header);
+    if (first.format == "JPEG")
+        source->header.warnings.emplace_back(
+            "JPEG is lossy: edges have ripples of some grey values; take the slices as they were before, if "
+            "there are any");
     return source;
 }
 

@@ -1,6 +1,6 @@
 // A picture or a grid of numbers as its file holds it, and the two ways in which programs look at one: as grey
 // values and as numbers. The readers and writers of the formats stand beside it: png.h, tiff.h, bmp.h, pnm.h,
-// npy.h, asc.h.
+// npy.h, asc.h; jpeg.h is a reader alone.
 //
 // Transparency. A reader keeps opacity as the last channel and composes nothing. A drawing (luminance()) is laid
 // on white, the colour of paper. A grid of heights has no such ground: heights() refuses a sample that is not

@@ -15,6 +15,7 @@
 #include "lod/edit/unite.h"
 #include "lod/field_state.h"
 #include "lod/fit_solid.h"
+#include "lod/memory.h"
 #include "lod/option_checks.h"
 #include "lod/packing/pack.h"
 #include "lod/pyramid_state.h"
@@ -106,6 +107,20 @@ std::int64_t countDiffering(const BSplineField& a, const BSplineField& b, double
 
 // ---- the edits, one after the other
 
+// World; of what is known.
+PointBox boxAround(const BSplineField& field) {
+    const openvdb::CoordBBox known = field.controlPoints->evalActiveVoxelBoundingBox();
+    PointBox box;
+    for (int corner = 0; corner < 8; ++corner) {
+        openvdb::Vec3d p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = corner >> axis & 1 ? known.max()[axis] : known.min()[axis];
+        const openvdb::Vec3d world = field.transform().indexToWorld(p);
+        box.add({world.x(), world.y(), world.z()});
+    }
+    return box;
+}
+
 MeshTopology measured(const BSplineField& field, const Progress& progress) {
     return topologyOf(polygonize(field, {.refine = 2}, progress));
 }
@@ -163,13 +178,15 @@ class Editor {
         return how;
     }
 
-    ToolFunction functionOf(const EditTool& tool, double reach) const {
-        return {tool, story_.text, field_.transform(), order_.halvings(step_), reach, progress_};
+    ToolFunction functionOf(const EditTool& tool, double reach, bool cut) const {
+        ToolFunction::Room room{{}, memoryLimit(options_.maxMemory)};
+        if (cut) room.solid = boxAround(field_);
+        return {tool, story_.text, field_.transform(), order_.halvings(step_), reach, room, progress_};
     }
 
     void unite(const EditTool& tool, bool cut, const char* nothing) {
         const UniteOptions how = uniting(cut);
-        const ToolFunction function = functionOf(tool, reachOf(how));
+        const ToolFunction function = functionOf(tool, reachOf(how), cut);
         story_.toolVolume = function.volume();
         take(lod::unite(field_, function, how, progress_), nothing);
     }
@@ -187,7 +204,8 @@ class Editor {
         for (std::size_t axis = 0; axis < 3; ++axis)
             moved.low[axis] += edit.by[axis], moved.high[axis] += edit.by[axis];
         UniteOptions how{true, perK_, 0};
-        const ToolFunction box = functionOf(edit.box, reachOf(how)), goal = functionOf(moved, reachOf(how));
+        const ToolFunction box = functionOf(edit.box, reachOf(how), true),
+                           goal = functionOf(moved, reachOf(how), false);
         const BSplineField whole = field_;
         take(lod::unite(field_, box, how, progress_), "misses the solid; nothing would change");
         const EditStory taken = story_;
@@ -269,6 +287,7 @@ void checkOptions(const wavelets::Pyramid& pyramid, const std::vector<Edit>& edi
                   const EditingOptions& options) {
     if (edits.empty()) throw UsageError("no edit; give --add, --cut, --move or --with");
     requirePositive("--blend", options.blend);
+    requirePositive("--max-memory", options.maxMemory);
     const int last = pyramid.order.levelUpTo(pyramid.stepCount());
     if (options.level < 0 || options.level > last)
         throw UsageError(fmt::format("--level: the pyramid has levels 0 to {}, not {}", last, options.level));

@@ -9,6 +9,7 @@
 
 #include "isowave/error.h"
 #include "isowave/measure.h"
+#include "lod/memory.h"
 #include "lod/option_checks.h"
 #include "lod/regions/region_distance.h"
 #include "polygonize/specks.h"
@@ -52,6 +53,11 @@ PointBox boundsOf(const Ball& ball) {
         bounds.add(corner);
     }
     return bounds;
+}
+
+double areaOf(const PointBox& box) {
+    return 2 *
+           (box.extent(0) * box.extent(1) + box.extent(1) * box.extent(2) + box.extent(2) * box.extent(0));
 }
 
 double largestSpacing(const openvdb::math::Transform& lattice) {
@@ -142,13 +148,13 @@ struct AxisWeights {
     std::array<std::array<double, 4>, kLeaf> weights{};
 
     AxisWeights(int origin, int halvings, int shift) {
-        const int scale = 1 << halvings;
-        const auto cellOf = [&](int i) { return static_cast<int>(std::floor(double(i) / scale)); };
+        const double scale = std::ldexp(1.0, halvings);
+        const auto cellOf = [&](int i) { return static_cast<int>(std::floor(i / scale)); };
         first = cellOf(origin) - 1 + shift;
         for (int n = 0; n < kLeaf; ++n) {
             const int i = origin + n, cell = cellOf(i);
             begin[static_cast<std::size_t>(n)] = cell - 1 + shift - first;
-            weights[static_cast<std::size_t>(n)] = cubicWeights(double(i - cell * scale) / scale);
+            weights[static_cast<std::size_t>(n)] = cubicWeights((i - cell * scale) / scale);
         }
         count = begin[kLeaf - 1] + 4;
     }
@@ -216,12 +222,13 @@ double voxelOf(const openvdb::math::Transform& lattice) { return std::cbrt(nodeV
 
 ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
                            const openvdb::math::Transform& lattice, const std::array<int, 3>& halvings,
-                           double reach, const Progress& progress)
+                           double reach, const Room& room, const Progress& progress)
     : lattice_(lattice.copy()), reach_(reach), halvings_(halvings) {
     if (const auto* ball = std::get_if<Ball>(&tool)) {
         check(*ball, name);
         bounds_ = boundsOf(*ball);
         volume_ = 4.0 / 3 * std::numbers::pi * std::pow(ball->radius, 3);
+        area_ = 4 * std::numbers::pi * std::pow(ball->radius, 2);
         analytic_ = [c = Vec3d(ball->centre.data()), r = ball->radius](const Vec3d& p) {
             return (p - c).length() - r;
         };
@@ -229,13 +236,16 @@ ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
         const RegionBox box = sorted(*given, name);
         bounds_.add(box.low), bounds_.add(box.high);
         volume_ = bounds_.extent(0) * bounds_.extent(1) * bounds_.extent(2);
+        area_ = areaOf(bounds_);
         analytic_ = [box](const Vec3d& p) { return distanceTo(box, p); };
     } else {
         const auto* path = std::get_if<std::filesystem::path>(&tool);
         mesh_ = path ? closedMesh(*path, "tool", progress)
                      : closedMesh(std::get<TriangleMesh>(tool), "tool", progress);
         bounds_ = boxAround(mesh_->mesh);
-        volume_ = std::abs(topologyOf(mesh_->mesh).volume);
+        const MeshTopology topology = topologyOf(mesh_->mesh);
+        volume_ = std::abs(topology.volume);
+        area_ = topology.area;
     }
     requireExtent(bounds_, lattice, name);
     const auto ofLevel = latticeOf(lattice, halvings);
@@ -243,6 +253,7 @@ ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
     const double scale = std::exp2((halvings[0] + halvings[1] + halvings[2]) / 3.0),
                  longest = largestSpacing(*ofLevel) / largestSpacing(lattice);
     const double halfWidth = std::max(kLeastHalfWidth, std::ceil((reach + 2) / scale) + 1);
+    refuseTooLarge(name, bytesFor(room, halfWidth), room.bytes, "give a smaller one");
     const openvdb::FloatGrid::Ptr distances =
         mesh_ ? distanceFromMesh(mesh_->mesh, *ofLevel, halfWidth, mesh_->evenOdd, progress)
               : sampled(analytic_, bounds_, *ofLevel, halfWidth, progress);
@@ -250,6 +261,25 @@ ToolFunction::ToolFunction(const EditTool& tool, const std::string& name,
                            nullptr, progress);
     shift_ = Coord::round(sampled_.transform().worldToIndex(ofLevel->indexToWorld(Vec3d(0))));
     margin_ = (reach + 2 * longest) * largestSpacing(lattice);
+}
+
+// One after the other: sampling holds the band of level L; uniting what is inside, too; the new field and its pyramid the band of level 0.
+double ToolFunction::bytesFor(const Room& room, double halfWidth) const {
+    const double finest = voxelOf(*lattice_), ofLevel = voxelOf(*latticeOf(*lattice_, halvings_));
+    double area = area_, volume = volume_;
+    if (room.solid) {
+        PointBox both;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            both.low[axis] = std::max(bounds_.low[axis], room.solid->low[axis]);
+            both.high[axis] = std::max(both.low[axis], std::min(bounds_.high[axis], room.solid->high[axis]));
+        }
+        volume = std::min(volume, both.extent(0) * both.extent(1) * both.extent(2));
+        if (!mesh_) area = std::min(area, areaOf(both));  // convex
+    }
+    const double sampled = kBytesPerToolSample * 2 * halfWidth * area_ / (ofLevel * ofLevel),
+                 near = kBytesPerToolPoint * 2 * reach_ * area / (finest * finest),
+                 inside = kBytesPerPointInTool * volume / (finest * finest * finest);
+    return std::max({sampled, near, inside});
 }
 
 double ToolFunction::distance(const Vec3d& world, double most) const {

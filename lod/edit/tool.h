@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -38,10 +39,18 @@ class ToolFunction : public Operand {
   public:
     static constexpr double kLargest = 4096;  // voxels of level 0, along an axis
 
+    // What the solid lets a tool take.
+    struct Room {
+        std::optional<PointBox> solid;  // of a cut: beyond the box around the solid nothing changes
+        double bytes = HUGE_VAL;
+    };
+
     // name: "--add ball:0,0,0,1", for messages. lattice: of level 0. halvings: of its axes, up to level L. reach: voxels of level 0 on both sides in which T is wanted.
-    // Throws UsageError for a tool that is none; InputError for a mesh that is open or cannot be read, and a tool beyond kLargest.
+    // Throws UsageError for a tool that is none; InputError for a mesh that is open or cannot be read, and, before memory is taken, for
+    // a tool beyond kLargest or one that takes more than room.bytes.
     ToolFunction(const EditTool& tool, const std::string& name, const openvdb::math::Transform& lattice,
-                 const std::array<int, 3>& halvings, double reach, const Progress& progress);
+                 const std::array<int, 3>& halvings, double reach, const Room& room,
+                 const Progress& progress);
 
     std::vector<openvdb::Coord> leaves(const Progress& progress) const override;
     Side values(const openvdb::Coord& origin, LeafValues& values) const override;
@@ -53,12 +62,13 @@ class ToolFunction : public Operand {
     double distance(const openvdb::Vec3d& world,
                     double most) const;  // without sign; any more than `most` beyond that
     Side sideOf(const openvdb::Coord& origin, int size) const;
+    double bytesFor(const Room& room, double halfWidth) const;
 
     std::function<double(const openvdb::Vec3d&)> analytic_;  // signed; of a ball or a box
     std::optional<RegionShape::Closed> mesh_;
     openvdb::math::Transform::ConstPtr lattice_;
     PointBox bounds_;  // world
-    double volume_ = 0, reach_ = 0, margin_ = 0;
+    double volume_ = 0, area_ = 0, reach_ = 0, margin_ = 0;
     std::array<int, 3> halvings_{};
     BSplineField sampled_;     // of level L, voxels of level 0
     openvdb::Coord shift_{0};  // lattice point 0 of level L in it

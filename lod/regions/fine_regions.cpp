@@ -22,7 +22,10 @@ Halvings between(const Halvings& finer, const Halvings& coarser) {
 }
 
 // No axis of a level is sampled more coarsely than it was.
-int leastOf(const Halvings& halvings) { return *std::min_element(halvings.begin(), halvings.end()); }
+int samplesAfter(int samples, const Halvings& halvings) {
+    constexpr int kAll = 31;  // bits of an int
+    return samples >> std::min(kAll, *std::min_element(halvings.begin(), halvings.end()));
+}
 
 bool areApart(const PointBox& a, const PointBox& b) {
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -93,10 +96,10 @@ std::optional<RegionBlend> FineRegions::blended(int step, const BSplineField& ow
     }
     if (stages.empty()) return std::nullopt;
     const Halvings ofOwn = order_.halvings(step);
-    int samples = std::max(1, refine >> leastOf(between(at, ofOwn)));
+    int samples = std::max(1, samplesAfter(refine, between(at, ofOwn)));
     for (std::size_t i = 0; i < stages.size(); ++i)
-        samples =
-            std::max(samples, samplesOf[stages.size() - 1 - i] >> leastOf(between(at, stages[i].halvings)));
+        samples = std::max(samples,
+                           samplesAfter(samplesOf[stages.size() - 1 - i], between(at, stages[i].halvings)));
     LocalLevels levels(std::move(stages), {ofOwn, smallest, nullptr});
     summary.coarsePoints = levels.pointsLeftOf(own, progress);
     return RegionBlend{std::move(field), std::move(levels), samples, summary};

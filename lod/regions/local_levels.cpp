@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "polygonize/quadric_collapse.h"
 
@@ -103,6 +104,16 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
     collapseByQuadrics(mesh, options, nullptr, progress);
 }
 
+namespace {
+
+// i times 2^halvings, cut where an int ends: a damaged file may halve an axis any number of times.
+int timesTwo(int i, int halvings) {
+    constexpr double kMost = std::numeric_limits<int>::max();
+    return static_cast<int>(std::clamp(std::ldexp(double(i), halvings), -kMost, kMost));
+}
+
+}  // namespace
+
 std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& progress) const {
     std::vector<openvdb::Coord> points;
     points.reserve(static_cast<std::size_t>(own.controlPointCount()));
@@ -113,9 +124,9 @@ std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& 
             FadeWeights::Reader weights(*stages_[stage].weights);
             const Halvings &fine = stages_[stage].halvings, &coarse = stages_.back().halvings;
             const auto there = [&](const openvdb::Coord& c) {
-                return openvdb::Coord(c.x() * (1 << (coarse[0] - fine[0])),
-                                      c.y() * (1 << (coarse[1] - fine[1])),
-                                      c.z() * (1 << (coarse[2] - fine[2])));
+                return openvdb::Coord(timesTwo(c.x(), coarse[0] - fine[0]),
+                                      timesTwo(c.y(), coarse[1] - fine[1]),
+                                      timesTwo(c.z(), coarse[2] - fine[2]));
             };
             for (std::size_t i = begin; i != end; ++i)
                 if (isLeft[i] && weights.at(there(points[i])) >= 1) isLeft[i] = 0;

@@ -9,12 +9,13 @@
 
 lod() makes closed meshes of an image, a mesh or a file; analyse() takes a solid apart without loss; check() and compare()
 measure meshes; curves() does in the plane what lod() does in space; filters(), subdivide() and reverse() are subdivision and
-its way back. The page docs/python.md has it all.
+its way back, curve_levels() and relief() the same of curves and of heights. The page docs/python.md has it all.
 """
 
 from ._native import version as __version__
 from .errors import Error, InputError, OperationError, UsageError
 from ._meshes import Mesh
+from .levels import Curve, CurveDetails, ReliefDetails, curve_levels, relief
 from .measure import Check, Comparison, Distance, check, compare
 from .plane import CurveLadder, CurveLevel, Ring, curves
 from .solids import Field, FieldMesh, Ladder, Level, Pyramid, analyse, field, lod
@@ -23,6 +24,8 @@ from .subdivision import Filter, Filters, Hierarchy, PolygonMesh, filters, rever
 __all__ = [
     "Check",
     "Comparison",
+    "Curve",
+    "CurveDetails",
     "CurveLadder",
     "CurveLevel",
     "Distance",
@@ -39,16 +42,19 @@ __all__ = [
     "OperationError",
     "PolygonMesh",
     "Pyramid",
+    "ReliefDetails",
     "Ring",
     "UsageError",
     "__version__",
     "analyse",
     "check",
     "compare",
+    "curve_levels",
     "curves",
     "field",
     "filters",
     "lod",
+    "relief",
     "reverse",
     "subdivide",
 ]

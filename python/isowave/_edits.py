@@ -108,7 +108,7 @@ def _texts_of_move(move: Any) -> Iterator[tuple[str, str]]:
 
 
 def edits_of(
-    add: Any, cut: Any, move: Any, level: int, blend: Optional[float], check: bool
+    add: Any, cut: Any, move: Any, level: int, blend: Optional[float], check: bool, max_memory: Optional[float]
 ) -> _native.Edits:
     """Adds, then cuts, then moves. Raises UsageError for what the command's table refuses."""
     edits = _native.Edits()
@@ -119,6 +119,6 @@ def edits_of(
     for one in listed(move):
         for name, text in _texts_of_move(one):
             edits.option(name, text)
-    for name, text in given(level=level, blend=blend, check=check):
+    for name, text in given(level=level, blend=blend, max_memory=max_memory, check=check):
         edits.option(name, text)
     return edits

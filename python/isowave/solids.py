@@ -270,6 +270,7 @@ class Pyramid:
         level: int = 0,
         blend: Optional[float] = None,
         check: bool = False,
+        max_memory: Optional[float] = None,
         threads: Optional[int] = None,
         progress: Optional[ProgressLike] = None,
     ) -> Pyramid:
@@ -286,6 +287,7 @@ class Pyramid:
         level: tools are sampled on its lattice, so that their edges are as round as its surfaces are.
         blend: radius of the fillet where a tool meets the surface, world units; without it the edge is sharp.
         check: makes the mesh of every step and counts the closed ones, as ``report["steps_closed"]``.
+        max_memory: GB; tools that would take more are refused. Without it 70 % of the computer's.
 
         Raises UsageError: no edit, a level that there is not, numbers that make no sense; InputError: a tool that misses the solid, an
         edit that changes nothing or removes everything, a mesh that is open, a field of another lattice.
@@ -299,7 +301,7 @@ class Pyramid:
         True
         """
         watch = Watch(progress, threads)
-        edits = edits_of(add, cut, move, level, blend, check)
+        edits = edits_of(add, cut, move, level, blend, check, max_memory)
         for other in listed(with_):
             if isinstance(other, Pyramid):
                 edits.with_pyramid(other._native)

@@ -5,6 +5,7 @@
 #include "python/native/errors.h"
 #include "python/native/filters.h"
 #include "python/native/ladder.h"
+#include "python/native/levels.h"
 #include "python/native/measure.h"
 #include "python/native/pyramid.h"
 #include "python/native/solid.h"
@@ -22,4 +23,5 @@ PYBIND11_MODULE(_native, module) {
     isowave::python::bindCurves(module);
     isowave::python::bindFilters(module);
     isowave::python::bindSubdivision(module);
+    isowave::python::bindLevels(module);
 }

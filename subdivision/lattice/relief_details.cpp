@@ -203,9 +203,16 @@ std::optional<MovedSample> firstMovedSample(const Grid& coarse, const Grid& grid
 }
 
 ReliefDetails ReliefDetails::load(const std::filesystem::path& path) {
-    return ReliefDetails(std::make_shared<const ReliefParts>(
-        readReliefDetails(readFile(path, "details of heights"), path.string())));
+    return read(readFile(path, "details of heights"), path.string());
 }
+
+ReliefDetails ReliefDetails::read(std::string_view bytes, const std::string& name) {
+    return ReliefDetails(std::make_shared<const ReliefParts>(readReliefDetails(bytes, name)));
+}
+
+const std::string& ReliefDetails::scheme() const { return parts_->levels.scheme; }
+
+int ReliefDetails::levels() const { return parts_->levels.levels(); }
 
 Grid ReliefDetails::coarseHeights() const {
     return picture(*parts_, parts_->levels.coarse, parts_->levels.levels());

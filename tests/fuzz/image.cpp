@@ -64,12 +64,6 @@ void checkSlices(const std::filesystem::path& path, const ImageReadOptions& opti
     });
 }
 
-void readWith(const std::filesystem::path& path, const ImageReadOptions& options) {
-    const Image image = readImage(path, options);
-    check(image);
-    checkSlices(path, options, image);
-}
-
 // A transfer syntax (PS3.5 section 10) whose pixels GDCM decodes.
 bool isCompressedDicom(std::string_view bytes) {
     for (const char* syntax : {"1.2.840.10008.1.2.4", "1.2.840.10008.1.2.5"})
@@ -80,17 +74,28 @@ bool isCompressedDicom(std::string_view bytes) {
 Answer read(std::string_view bytes, const Format& format) {
     if (format.name == std::string_view("dicom") && isCompressedDicom(bytes)) return Answer::refused;
     const auto path = fileOf(bytes, format.file);
-    ImageReadOptions options;
-    options.memoryLimit = kMemory;
+    ImageReadOptions options = imageOptions();
     voxelFilesOf(path);
-    if (answerOf(path.string(), [&] { readWith(path, options); }) == Answer::read) return Answer::read;
+    if (answerOf(path.string(), [&] { readBothWays(path, options); }) == Answer::read) return Answer::read;
     format.chooseFirst(options);
     options.nan = 0.0f;
     options.resampleSlices = std::string_view(format.name).starts_with("dicom");
-    return answerOf(path.string(), [&] { readWith(path, options); });
+    return answerOf(path.string(), [&] { readBothWays(path, options); });
 }
 
 }  // namespace
+
+ImageReadOptions imageOptions() {
+    ImageReadOptions options;
+    options.memoryLimit = kMemory;
+    return options;
+}
+
+void readBothWays(const std::filesystem::path& path, const ImageReadOptions& options) {
+    const Image image = readImage(path, options);
+    check(image);
+    checkSlices(path, options, image);
+}
 
 std::vector<Target> imageTargets() {
     std::vector<Target> targets;

@@ -2,6 +2,7 @@
 
 #include "io/picture/asc.h"
 #include "io/picture/bmp.h"
+#include "io/picture/jpeg.h"
 #include "io/picture/npy.h"
 #include "io/picture/picture.h"
 #include "io/picture/png.h"
@@ -50,8 +51,8 @@ Answer read(std::string_view bytes, Reader reader) {
 
 std::vector<Target> pictureTargets() {
     const std::pair<const char*, Reader> readers[] = {
-        {"png", readPng}, {"pnm", readPnm}, {"bmp", readBmp},
-        {"npy", readNpy}, {"asc", readAsc}, {"tiff-picture", readTiff},
+        {"png", readPng}, {"pnm", readPnm},           {"bmp", readBmp},   {"npy", readNpy},
+        {"asc", readAsc}, {"tiff-picture", readTiff}, {"jpeg", readJpeg},
     };
     std::vector<Target> targets;
     for (const auto& [name, reader] : readers)

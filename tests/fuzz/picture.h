@@ -1,4 +1,4 @@
-// Readers of pictures and grids: png, pnm, bmp, npy, asc, tiff-picture.
+// Readers of pictures and grids: png, pnm, bmp, npy, asc, tiff-picture, jpeg.
 #pragma once
 
 #include "tests/fuzz/target.h"

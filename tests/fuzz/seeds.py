@@ -342,6 +342,27 @@ def bmp(bits, rows, compression=0, palette=b""):
             + struct.pack("<IiiHHIIiiII", 40, 4, 3, 1, bits, compression, len(data), 0, 0, len(palette) // 4, 0) + palette + data)
 
 
+def jpeg(components, progressive=False):
+    """8 x 8 pixels of one value a component, 5/8 of a step from the middle; of two codes for first coefficients and one for the rest."""
+    def segment(mark, data):
+        return struct.pack(">BBH", 0xFF, mark, len(data) + 2) + data
+    def table(kind, counts, values):
+        return segment(0xC4, bytes([kind]) + bytes(counts).ljust(16, b"\0") + bytes(values))
+    def scan(numbers, last, bits):
+        bits += "1" * (-len(bits) % 8)
+        head = bytes([len(numbers)]) + b"".join(bytes([n, 0]) for n in numbers) + bytes([*last, 0])
+        return segment(0xDA, head) + bytes(int(bits[i:i + 8], 2) for i in range(0, len(bits), 8))
+    numbers = range(1, components + 1)
+    frame = struct.pack(">BHHB", 8, 8, 8, components) + b"".join(bytes([n, 0x11, 0]) for n in numbers)
+    tables = table(0x00, [1, 1], [0, 3]) + table(0x10, [1], [0])
+    if progressive:  # the first coefficients of all, then the others of each
+        scans = scan(numbers, (0, 0), "10101" * components) + b"".join(scan([n], (1, 63), "0") for n in numbers)
+    else:
+        scans = scan(numbers, (0, 63), "101010" * components)
+    return (b"\xff\xd8" + segment(0xE0, b"JFIF\0\1\1\0\0\1\0\1\0\0") + segment(0xDB, b"\0" + bytes([8] * 64)) +
+            segment(0xC2 if progressive else 0xC0, frame) + tables + scans + b"\xff\xd9")
+
+
 def npy(kind, shape, data, fortran=False):
     head = "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }" % (kind, fortran, shape)
     head = head.ljust(117) + "\n"
@@ -362,6 +383,9 @@ def pictures():
     yield "bmp/colours.bmp", bmp(24, [bytes(range(12))] * 3)
     yield "bmp/palette.bmp", bmp(8, grey, palette=bytes(range(256)) * 4)
     yield "bmp/runs.bmp", bmp(8, b"\x04\x01\0\0\x04\x02\0\0\0\x04\1\2\3\4\0\1", 1, bytes(range(256)) * 4)
+    yield "jpeg/grey.jpg", jpeg(1)
+    yield "jpeg/colours.jpg", jpeg(3)
+    yield "jpeg/progressive.jpg", jpeg(3, True)
     yield "npy/bytes.npy", npy("|u1", (3, 4), VOXELS[:12])
     yield "npy/doubles.npy", npy(">f8", (3, 4), struct.pack(">12d", *VOXELS[:12]), True)
     yield "npy/colours.npy", npy("<u2", (2, 2, 3), bytes(VOXELS))
@@ -406,6 +430,113 @@ def hierarchy():
     return (b"isowmesh" + struct.pack("<3I", 1, len(text), zlib.crc32(text)) + text + b"".join(p[1] for p in parts))
 
 
+def varint(value):
+    out = b""
+    while value >= 128:
+        out, value = out + bytes([value & 127 | 128]), value >> 7
+    return out + bytes([value])
+
+
+def folded(value):
+    return varint(2 * value if value >= 0 else -2 * value - 1)
+
+
+def numbers(values):
+    """All first bytes, then all second ones, ..., without compression."""
+    packed = struct.pack(f"<{len(values)}d", *values)
+    return bytes(packed[8 * i + k] for k in range(8) for i in range(len(values)))
+
+
+def sections(magic, first, *others):
+    """Both ways in which a target takes them: as a file, and with all sections but the first without compression."""
+    def one(kind, content):
+        head = struct.pack("<IQ", kind, len(content))
+        return head + struct.pack("<I", zlib.crc32(head + content)) + content
+    start = magic + struct.pack("<I", 1) + one(*first)
+    return (start + b"".join(one(kind, zlib.compress(content)) for kind, content in others),
+            b"plain" + start + b"".join(one(kind, content) for kind, content in others))
+
+
+def text(value):
+    return struct.pack("<I", len(value)) + value.encode()
+
+
+def curve_pyramid(side, inside, kind):
+    """A square of control points, of which those in the middle are inside. Values as their bits (kind 4)."""
+    rows = varint(side)
+    for row in range(side):
+        rows += folded(1 if row else 0) + varint(1) + folded(0) + varint(2 * (side - 4))
+    bits = [struct.pack("<f", -1 if {x in inside and y in inside} == {True} else 1) for y in range(side) for x in range(side)]
+    values = b"".join(bits)
+    head = (struct.pack("<5d2Q4dI", 1, 0, 0, 1, 1, len(rows), side * side, 0, 0, side, side, 0) + text(kind) +
+            struct.pack("<dI2d2QIIdQ", 1, 1, 4, 2, side * side, 0, 0, 1, 0.01, 0))
+    return sections(b"ISOWAVEC", (1, head), (2, rows), (4, values))
+
+
+def curve_details(scheme, curves, mask="", width=0):
+    """curves: closed, dimension, points of the coarsest level and of the finer ones."""
+    levels = max(len(points) - 1 for _, _, points in curves)
+    sizes = varint(len(curves)) + b"".join(
+        varint(2 * dimension + closed) + varint(len(points) - 1) + b"".join(map(varint, points)) for closed, dimension, points in curves)
+    head = text(scheme) + text(mask) + struct.pack("<iIQ", width, levels, len(sizes))
+    parts = [(2, sizes), (3, numbers([i % 7 + 0.5 * (i % 2) for _, d, points in curves for i in range(d * points[0])]))]
+    for level in range(levels, 0, -1):
+        count = 0
+        for _, dimension, points in curves:
+            if level < len(points):
+                at = len(points) - 1 - level
+                count += dimension * (points[at + 1] - points[at])
+        parts.append((4, numbers([i / 100 for i in range(count)])))
+    return sections(b"ISOWCURV", (1, head), *parts)
+
+
+def relief_details(scheme, levels, channels, rows, columns):
+    def side(n):
+        return (n - 1 + (1 << levels) - 1) >> levels
+    def nodes(level):
+        return ((side(columns) << level) + 1) * ((side(rows) << level) + 1)
+    head = text(scheme) + struct.pack("<IIQQ", levels, channels, rows, columns)
+    parts = [(2, numbers([i % 5 for i in range(channels * nodes(0))]))]
+    parts += [(3, numbers([i / 100 for i in range(channels * (nodes(k + 1) - nodes(k)))])) for k in range(levels)]
+    return sections(b"ISOWGRID", (1, head), *parts)
+
+
+def section_files():
+    made = {
+        "curve-pyramid/square": curve_pyramid(16, range(5, 11), "image 16 x 16"),
+        "curve-pyramid/thin": curve_pyramid(12, range(6, 7), "1 polygon"),
+        "curve-details/closed": curve_details("cubic-7", [(1, 2, [8, 16, 32])]),
+        "curve-details/open": curve_details("dlg-refined", [(0, 2, [9, 17, 33]), (0, 2, [9, 17])]),
+        "curve-details/space": curve_details("chaikin-4", [(1, 3, [6, 12])]),
+        "curve-details/mask": curve_details("", [(1, 2, [8, 16])], "1/8 1/2 3/4 1/2 1/8", 7),
+        "relief-details/heights": relief_details("butterfly-3", 1, 1, 9, 11),
+        "relief-details/points": relief_details("loop-2", 2, 3, 9, 9),
+        "relief-details/like": relief_details("loop-like:1/16,1/8", 1, 1, 9, 9),
+    }
+    for name, (packed, plain) in made.items():
+        yield f"{name}.packed", packed
+        yield f"{name}.plain", plain
+
+
+def zarrs():
+    def store(array, attributes, chunk):
+        return b"\0".join([json.dumps(array).encode(), json.dumps(attributes).encode() if attributes else b"", chunk])
+    array = {"zarr_format": 2, "shape": [2, 3, 4], "chunks": [2, 3, 4], "dtype": "|u1", "compressor": None, "fill_value": 0, "order": "C",
+             "filters": None}
+    axes = [{"name": n, "type": "space", "unit": "micrometer"} for n in "zyx"]
+    image = {"multiscales": [{"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": [
+        {"type": "scale", "scale": [2, 0.5, 0.5]}, {"type": "translation", "translation": [1, 2, 3]}]}]}]}
+    yield "zarr/plain", store(array, None, VOXELS)
+    yield "zarr/packed", store(dict(array, compressor={"id": "zlib", "level": 1}, dtype="<i2"), None, zlib.compress(SHORTS))
+    yield "zarr/gzip_fortran", store(dict(array, compressor={"id": "gzip", "level": 1}, order="F", fill_value="NaN", dtype=">f4"), None,
+                                     gzip.compress(struct.pack(">24f", *VOXELS), mtime=0))
+    yield "zarr/image", store(array, image, VOXELS)
+    five = dict(array, shape=[1, 2, 2, 3, 4], chunks=[1, 1, 2, 3, 4], dimension_separator="/")
+    named = [{"name": n, "type": t} for n, t in zip("tczyx", ("time", "channel", "space", "space", "space"))]
+    yield "zarr/five_axes", store(five, {"multiscales": [{"version": "0.4", "axes": named, "datasets": [{"path": "0"}]}]}, VOXELS)
+    yield "zarr/old_image", store(five, {"multiscales": [{"version": "0.1", "datasets": [{"path": "0"}]}]}, VOXELS)
+
+
 def shapes():
     """Bytes of tests/fuzz/solids/shapes.cpp: options, size, boxes; sizes there are value % 8 + 2."""
     plain = bytes([1, 0, 3])  # iso 0.5, not inverted, the fit that suits
@@ -431,6 +562,8 @@ def shapes():
 
 def own():
     yield "hierarchy/cube.details", hierarchy()
+    yield from section_files()
+    yield from zarrs()
     for name, text in (("number", "1.5e3"), ("range", "2..5"), ("open_range", "..3"), ("triple", "0.5x0.5x1"),
                        ("list", "20000,5000"), ("place", "out/part")):
         yield f"values/{name}", text.encode()

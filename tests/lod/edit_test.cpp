@@ -378,6 +378,13 @@ TEST(Edit, RefusesWhatMakesNoSense) {
                 HasSubstr("--blend is of"));
     EXPECT_THAT(message({EditCut{inside}}, {.level = 90}), HasSubstr("--level: the pyramid has levels 0 to"));
     EXPECT_THAT(message({EditCut{inside}}, {.level = -1}), HasSubstr("--level"));
+    for (const int level : {0, 1})
+        EXPECT_THAT(
+            message({EditAdd{Ball{{20, 18, 10}, 1500}}}, {.level = level, .maxMemory = 1e9}),
+            testing::AllOf(HasSubstr("--add ball:20,18,10,1500: would take about "),
+                           HasSubstr("over the limit of 1 GB; give a smaller one, or raise the limit")));
+    EXPECT_THAT(message({EditCut{inside}}, {.maxMemory = 1000}), HasSubstr("would take about"));
+    EXPECT_THAT(message({EditCut{inside}}, {.maxMemory = -1}), HasSubstr("usage: --max-memory"));
     TriangleMesh open = boxMesh({0, 0, 0}, {5, 5, 5});
     open.triangles.pop_back();
     EXPECT_THAT(message({EditCut{open}}, {}), HasSubstr("is open"));

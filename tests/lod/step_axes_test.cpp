@@ -141,6 +141,12 @@ TEST_F(StoredSteps, APyramidsFileKeepsTheirOrder) {
     const Solid fromLevel2 = open(folder / "a.vdb", {.finestLevel = 2});
     EXPECT_EQ(makeLevel(fromLevel2, fromLevel2.order().stepOf(2), plain).report.topology.triangles,
               direct.levels[2].report.topology.triangles);
+    EXPECT_THROW(open(folder / "a.vdb", {.finestLevel = -1}), UsageError);
+    EXPECT_THROW(open(folder / "a.vdb", {.finestStep = -1}), UsageError);
+    for (const int far : {1'000'000'000, 2'000'000'000})
+        EXPECT_THROW(makeLevel(solid, solid.order().stepOf(far), plain), InputError);
+    EXPECT_THROW(makeLadder(solid, {.levels = StepRange{1'000'000'000, {}}, .hold = Holding::none}),
+                 InputError);
     EXPECT_THROW(makeLevel(fromLevel2, 3, plain), UsageError);  // step 3 is finer, and was not read
     std::vector<std::optional<int>> levels;
     for (const StepFacts& facts : pyramid.steps()) levels.push_back(facts.level);

@@ -182,6 +182,8 @@ TEST(CurvesCommand, RefusesWhatAPyramidHasNoUseFor) {
                {(folder / "half.iwc").string(), {}, 3, "it is truncated"},
                {(folder / "other.iwc").string(), {}, 3, "is no pyramid of curves"},
                {(folder / "none.iwc").string(), {}, 3, "none.iwc"}};
+    for (const char* bad : {"half.iwc", "other.iwc", "none.iwc"})
+        EXPECT_EQ(isowave({"info", (folder / bad).string()}).exitCode, 3) << bad;
     const auto snapshot = folder.snapshot();
     for (const auto& bad : all) {
         Arguments arguments{"curves", bad.input, "-o", (folder / "new").string()};
@@ -191,6 +193,36 @@ TEST(CurvesCommand, RefusesWhatAPyramidHasNoUseFor) {
         EXPECT_THAT(refused.err, HasSubstr(bad.says));
         EXPECT_EQ(refused.errorLines(), 1) << refused.err;
         EXPECT_EQ(folder.snapshot(), snapshot) << bad.says;
+    }
+}
+
+// Of the file alone, what the command that wrote it told of its input.
+TEST(CurvesCommand, InfoTellsOfAPyramidWhatCurvesTells) {
+    for (const auto& [input, options] : {std::pair<std::string, Arguments>{kAfrica, {"--pixels", "60"}},
+                                         {kKeys, {"--invert", "--fit", "binary"}}}) {
+        const Folder folder;
+        const std::string file = (folder / "p.iwc").string();
+        Arguments all{"--steps", "0..", "--json", "-", "--pyramid", file};
+        all.insert(all.end(), options.begin(), options.end());
+        nlohmann::json told = isowave(curves(input, folder, all)).json(),
+                       info = isowave({"info", file, "--json", "-"}).json();
+        for (auto& step : told["steps"]) step.erase("file");
+        EXPECT_EQ(info["steps"], told["steps"]);
+        for (const char* key : {"fit", "coefficients_stored", "control_points"})
+            EXPECT_EQ(info[key], told[key]);
+        for (const char* key : {"kind", "pixel"}) EXPECT_EQ(info["input"][key], told["input"][key]);
+        EXPECT_EQ(info["kind"], "curves");
+        EXPECT_EQ(info["path"], file);
+        EXPECT_EQ(info["file_bytes"], contentOf(file).size());
+        EXPECT_EQ(info["input"]["y_up"], input == kAfrica);
+        const auto extent = info["input"]["extent"].get<std::array<std::array<double, 2>, 2>>();
+        EXPECT_LT(extent[0][0], extent[1][0]);
+        EXPECT_LT(extent[0][1], extent[1][1]);
+        const std::string text = isowave({"info", file}).out;
+        EXPECT_THAT(text, HasSubstr("pyramid of curves of "));
+        EXPECT_THAT(text, HasSubstr(told["input"]["kind"].get<std::string>()));
+        EXPECT_THAT(text, HasSubstr("L1a"));
+        EXPECT_THAT(text, HasSubstr(" on disk"));
     }
 }
 

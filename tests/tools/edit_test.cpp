@@ -90,6 +90,9 @@ TEST_F(EditedTorus, RefusesWhatMakesNoSense) {
     expectRefused({"--add", "ball:20,0,0,2", "-o", out}, 3, "lies in the solid altogether");
     expectRefused({"--cut", "ball:0,0,0,60", "-o", out}, 3, "removes all of the solid");
     expectRefused({"--cut", "ball:0,0,0,1e9", "-o", out}, 3, "in the units of the solid?");
+    expectRefused({"--add", "ball:0,0,0,1500", "--max-memory", "1", "-o", out}, 3,
+                  "--add ball:0,0,0,1500: would take");
+    expectRefused({"--add", "ball:0,0,0,6", "--max-memory", "0", "-o", out}, 2, "--max-memory");
     expectRefused({"--cut", at("none.stl"), "-o", out}, 3, "none.stl");
     expectRefused({"--cut", at("torus.stl"), "-o", at("torus.stl")}, 2, "-o");
     expectRefused({"--with", at("old.vdb"), "-o", at("old.vdb")}, 2, "old.vdb");

@@ -8,6 +8,7 @@ namespace isowave::tools_test {
 namespace {
 
 using Json = nlohmann::json;
+using testing::HasSubstr;
 
 class TorusPyramid : public ::testing::Test {
   protected:
@@ -65,6 +66,25 @@ TEST_F(TorusPyramid, WritesMeshesByTheNameOfTheFile) {
     EXPECT_EQ(contentOf(folder / "plain"), contentOf(folder / "a.off"));
     succeed({"mesh", pyramid(), "--step", "3", "-o", (folder / "b.off").string()});
     EXPECT_EQ(contentOf(folder / "b.off"), contentOf(folder / "a.off")) << "level 1 is step 3";
+}
+
+TEST_F(TorusPyramid, SaysWhichStepToTakeInsteadOfOneThatItDoesNotHave) {
+    const auto refused = [&](const char* option, const std::string& number) {
+        const Result result =
+            isowave({"mesh", pyramid(), option, number, "-o", (folder / "x.ply").string(), "--quiet"});
+        EXPECT_EQ(result.exitCode, 3) << number;
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_FALSE(fs::exists(folder / "x.ply"));
+        return result.err;
+    };
+    EXPECT_THAT(refused("--level", "20"), HasSubstr("not step 60 (level 20)"));
+    EXPECT_THAT(refused("--step", "61"), HasSubstr("not step 61\n"));
+    const auto steps = succeed({"info", pyramid(), "--json", "-"}).json()["steps"];
+    const std::string last = std::to_string(steps.size() - 1);
+    const std::string text = refused("--step", last);
+    ASSERT_THAT(text, HasSubstr("the whole solid has vanished at step " + last + "; take step "));
+    const std::string instead = std::to_string(std::stoi(text.substr(text.rfind("; take step ") + 12)));
+    succeed({"mesh", pyramid(), "--step", instead, "-o", (folder / "x.ply").string()});
 }
 
 TEST_F(TorusPyramid, GivesItsFieldAsAGridForOtherTools) {

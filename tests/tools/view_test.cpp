@@ -171,7 +171,10 @@ TEST(View, RefusesInOneLineAndLeavesNothing) {
         << R"({"version":1,"input":{},"levels":[{"step":0,"file":"lost.ply"}]})";
     std::ofstream(folder / "words.json")
         << R"({"version":1,"input":7,"levels":[{"step":"a","file":"lost.ply"}]})";
+    std::ofstream(folder / "coast.iwc") << "ISOWAVEC";
     const auto before = folder.snapshot();
+    expectRefusal({"view", (folder / "coast.iwc").string(), "-o", page}, 3, "is a pyramid of curves");
+    expectRefusal({"view", (folder / "coast.iwc").string(), "-o", page}, 3, "isowave curves ");
     expectRefusal({"view", "-o", page}, 2, "expects INPUT...");
     expectRefusal({"view", kPart}, 2, "-o is missing");
     expectRefusal({"view", kPart, "-o", (folder / "page.ply").string()}, 2, ".html");

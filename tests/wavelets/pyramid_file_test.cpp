@@ -80,6 +80,7 @@ TEST(PyramidFile, RefusesFirstLevelsThatAreNoneOrContradictTheSteps) {
     const openvdb::GridCPtrVec grids(content.grids.begin(), content.grids.end());
     for (const auto& [text, complaint] :
          {std::pair{"xyz", ""}, std::pair{"a", "the first levels are 'a'"},
+          std::pair{"xx", "the first levels are 'xx', expected"},
           std::pair{"xy x", "step 3 halves z, and x by the first levels 'xy x'"}}) {
         openvdb::MetaMap metadata(*content.metadata);
         metadata.insertMeta("isowave:first_levels", openvdb::StringMetadata(text));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace isowave::wavelets {
@@ -153,10 +154,36 @@ TEST(StepOrder, ComesBackFromItsText) {
     for (const StepOrder& order : {StepOrder{}, kFlat, StepOrder{{"z"}}, StepOrder{{"zx", "xyz", "zy"}}})
         EXPECT_EQ(orderOf(textOf(order)), order) << textOf(order);
     EXPECT_EQ(textOf(kFlat), "xy xy");
-    for (const std::string bad : {" ", "xy  xy", " xy", "xy ", "xw", "XY", "xy,xy", "1"})
+    for (const std::string bad :
+         {" ", "xy  xy", " xy", "xy ", "xw", "XY", "xy,xy", "1", "xx", "xy yzy", "zxyz"})
         EXPECT_EQ(orderOf(bad), std::nullopt) << bad;
-    EXPECT_TRUE(orderOf(std::string(kMostFirstSteps, 'x')));
-    EXPECT_EQ(orderOf(std::string(kMostFirstSteps + 1, 'x')), std::nullopt);
+    StepOrder most{std::vector<std::string>(kMostHalvings, "xyz")};
+    EXPECT_EQ(orderOf(textOf(most)), most);
+    most.first.push_back("x");
+    EXPECT_EQ(orderOf(textOf(most)), std::nullopt);
+}
+
+TEST(StepOrder, LevelsThatNoSolidHasAreNumbersStill) {
+    constexpr int kLast = std::numeric_limits<int>::max(), kNoLevel = 1 << 30;
+    for (const StepOrder& order : {StepOrder{}, kFlat}) {
+        for (const int level : {kLast, 2'000'000'000, 1'000'000'000, kNoLevel / 3 + 1})
+            EXPECT_EQ(order.stepOf(level), kNoLevel) << level;
+        const int level = order.levelUpTo(kNoLevel - 1);
+        EXPECT_LT(order.stepOf(level), kNoLevel);
+        EXPECT_EQ(order.levelOf(order.stepOf(level)), level);
+        EXPECT_EQ(order.halvings(order.stepOf(level)),
+                  (std::array{level, level, level - int(order.first.size())}));
+    }
+}
+
+TEST(StepOrder, AnInfiniteVoxelIsTheLargestNumber) {
+    constexpr double kLargest = std::numeric_limits<double>::max(),
+                     kInfinite = std::numeric_limits<double>::infinity();
+    for (const StepOrder& order : {StepOrder{}, kFlat}) {
+        EXPECT_EQ(order.levelOfVoxel(kInfinite), 1023);
+        EXPECT_EQ(order.levelOfVoxel(kLargest), 1023);
+        EXPECT_EQ(order.levelOfVoxel(kLargest / 2), 1022);
+    }
 }
 
 TEST(StepOrder, OfTheThinnestVoxelsFitsIntoAFile) {

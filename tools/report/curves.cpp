@@ -38,12 +38,7 @@ Json holdJson(const curves2d::HoldFacts& hold) {
             {"area", hold.area}};
 }
 
-Json stepJson(const CurvesReport::Step& step) {
-    const StepFacts& f = step.facts;
-    Json json;
-    json["step"] = f.step;
-    json["level"] = f.step % 2 == 0 ? Json(f.step / 2) : Json(nullptr);
-    json["file"] = step.file ? Json(*step.file) : Json(nullptr);
+void putFacts(Json& json, const StepFacts& f) {
     json["domain"] = f.domain;
     json["control_points"] = f.controlPoints;
     json["nodes"] = f.nodes;
@@ -55,6 +50,14 @@ Json stepJson(const CurvesReport::Step& step) {
     json["max_to_level0"] = known ? finite(f.maxToLevel0) : Json(nullptr);
     json["rms_to_level0"] = known ? finite(f.rmsToLevel0) : Json(nullptr);
     json["hold"] = f.hold ? holdJson(*f.hold) : Json(nullptr);
+}
+
+Json levelOf(const StepFacts& f) { return f.step % 2 == 0 ? Json(f.step / 2) : Json(nullptr); }
+
+Json stepJson(const CurvesReport::Step& step) {
+    Json json{{"step", step.facts.step}, {"level", levelOf(step.facts)}};
+    json["file"] = step.file ? Json(*step.file) : Json(nullptr);
+    putFacts(json, step.facts);
     return json;
 }
 
@@ -89,10 +92,12 @@ Json treeOf(const CurvesReport& report) {
 
 std::string jsonOf(const CurvesReport& report) { return dumped(treeOf(report), 2); }
 
-std::string table(const CurvesReport& report) {
+namespace {
+
+std::string tableOf(const std::vector<StepFacts>& steps) {
     Table table({"step", "domain", "|I|", "nodes", "rings", "holes", "points", "area", "thin", "kept %",
                  "changed", "cuts, fills"});
-    for (const auto& [f, file] : report.steps) {
+    for (const StepFacts& f : steps) {
         std::vector<std::string> row{curves2d::stepName(f.step),
                                      fmt::format("{}x{}", f.domain[0], f.domain[1]),
                                      tools::grouped(f.controlPoints),
@@ -107,13 +112,24 @@ std::string table(const CurvesReport& report) {
     return table.text();
 }
 
+double ratioOf(const Ladder& ladder) {
+    return static_cast<double>(ladder.coefficients) /
+           static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints));
+}
+
+}  // namespace
+
+std::string table(const CurvesReport& report) {
+    std::vector<StepFacts> steps;
+    for (const CurvesReport::Step& step : report.steps) steps.push_back(step.facts);
+    return tableOf(steps);
+}
+
 std::string summary(const CurvesReport& report, const std::string& folder) {
     const Ladder& ladder = report.ladder;
-    const double ratio = static_cast<double>(ladder.coefficients) /
-                         static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints));
     return fmt::format("{}: {}, {} control points, {} coefficients (+{:.1f} %), {} files\n", folder,
                        report.kind, tools::grouped(ladder.controlPoints), tools::grouped(ladder.coefficients),
-                       100.0 * (ratio - 1), report.files);
+                       100.0 * (ratioOf(ladder) - 1), report.files);
 }
 
 std::vector<std::string> fitRemarks(const curves2d::FitReport& report) {
@@ -129,6 +145,49 @@ std::string smoothRemark(const CurvesReport& report) {
                               : "";
     return fmt::format("the smooth curves stay within {} pixels of the zero set{}",
                        shortNumber(report.deviation), straight);
+}
+
+// ---- info
+
+std::string jsonOf(const CurvePyramidInfo& info) {
+    const auto corner = [](curves2d::Point p) { return std::array{p.x, p.y}; };
+    Json json{
+        {"version", 1}, {"path", info.path}, {"kind", "curves"}, {"format_version", info.formatVersion}};
+    json["K"] = info.K;
+    json["input"] = {{"kind", info.kind},
+                     {"pixel", info.pixel},
+                     {"extent", {corner(info.extent.low), corner(info.extent.high)}},
+                     {"y_up", info.yUp}};
+    json["fit"] = fitJson(info.ladder);
+    json["coefficients_stored"] = info.ladder.coefficients;
+    json["control_points"] = info.ladder.controlPoints;
+    json["file_bytes"] = info.fileBytes;
+    json["steps"] = Json::array();
+    for (const StepFacts& f : info.steps) {
+        Json step{{"step", f.step}, {"level", levelOf(f)}};
+        putFacts(step, f);
+        json["steps"].push_back(std::move(step));
+    }
+    return dumped(json);
+}
+
+std::string textOf(const CurvePyramidInfo& info) {
+    const Ladder& ladder = info.ladder;
+    std::string text =
+        fmt::format("{}: pyramid of curves of {} steps, K {:g}\n", info.path, info.steps.size() - 1, info.K);
+    text +=
+        fmt::format("input      {}, {} fit\n", info.kind, ladder.fit == Fit::binary ? "binary" : "distance");
+    text += fmt::format("pixel      {:.6g}, y points {}\n", info.pixel, info.yUp ? "up" : "down");
+    text += fmt::format("from       {:.6g} {:.6g}\nto         {:.6g} {:.6g}\n", info.extent.low.x,
+                        info.extent.low.y, info.extent.high.x, info.extent.high.y);
+    text += tableOf(info.steps);
+    text +=
+        fmt::format("{} coefficients for {} control points (x{:.3f})\n", tools::grouped(ladder.coefficients),
+                    tools::grouped(ladder.controlPoints), ratioOf(ladder));
+    return text + fmt::format("{} on disk ({:.2f} bytes a control point)\n",
+                              bytesText(static_cast<double>(info.fileBytes)),
+                              static_cast<double>(info.fileBytes) /
+                                  static_cast<double>(std::max<std::int64_t>(1, ladder.controlPoints)));
 }
 
 }  // namespace isowave::tools

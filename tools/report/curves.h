@@ -38,4 +38,18 @@ std::string summary(const CurvesReport& report, const std::string& folder);
 std::vector<std::string> fitRemarks(const curves2d::FitReport& report);
 std::string smoothRemark(const CurvesReport& report);
 
+// What `isowave info` tells of the file of a pyramid of curves.
+struct CurvePyramidInfo {
+    std::string path, kind;  // kind: of the input, "image 400 x 328"
+    std::uint32_t formatVersion = 1;
+    double K = 1, pixel = 1;
+    curves2d::Box extent;  // of the input, and in its unit
+    bool yUp = false;
+    std::int64_t fileBytes = 0;
+    curves2d::Ladder ladder;
+    std::vector<curves2d::StepFacts> steps;  // all, those between levels, too; with what is held by levels
+};
+std::string jsonOf(const CurvePyramidInfo& info);
+std::string textOf(const CurvePyramidInfo& info);
+
 }  // namespace isowave::tools

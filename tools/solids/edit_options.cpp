@@ -14,6 +14,9 @@ void EditChoices::declare(OptionList& options) {
                   "where a tool of --add or --cut meets the surface the edge becomes a fillet of radius R "
                   "(world units)",
                   [this](const std::string& v) { how.blend = positive(v); });
+    options.value("--max-memory", "GB", "70 % of this computer's",
+                  "refuse tools that would take more, as far as can be told beforehand",
+                  [this](const std::string& v) { how.maxMemory = positive(v) * kBytesPerGigabyte; });
     options.flag("--check", "make every step's mesh; exit code 4 where one is not closed and 2-manifold",
                  how.checkSteps);
 }

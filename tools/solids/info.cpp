@@ -4,6 +4,8 @@
 #include "base/text.h"
 #include "compress/packed_file.h"
 #include "compress/sections.h"
+#include "curves2d/file/pyramid_file.h"
+#include "curves2d/fit.h"
 #include "io/mesh/equal_points.h"
 #include "isowave/error.h"
 #include "lod/open_image.h"
@@ -11,6 +13,7 @@
 #include "lod/solid.h"
 #include "tools/commands.h"
 #include "tools/console.h"
+#include "tools/report/curves.h"
 #include "tools/report/info_report.h"
 #include "tools/solids/solid_options.h"
 #include "volume/vdb_file.h"
@@ -87,6 +90,24 @@ PyramidInfo pyramidInfo(const fs::path& path, const LevelOptions& options, Conso
     return info;
 }
 
+CurvePyramidInfo curvesInfo(const fs::path& path, Console& console) {
+    curves2d::Input input = curves2d::readInput(path, {}, console.progress());
+    CurvePyramidInfo info{.path = path.string(),
+                          .kind = input.kind,
+                          .formatVersion = curves2d::kPyramidFormatVersion,
+                          .K = input.fitted->field.K,
+                          .pixel = input.pixel,
+                          .extent = input.extent,
+                          .yUp = input.yUp,
+                          .fileBytes = static_cast<std::int64_t>(fs::file_size(path)),
+                          .ladder = {},
+                          .steps = {}};
+    info.ladder = curves2d::makeLadder(
+        std::move(input), {}, [&](const curves2d::LadderStep& step) { info.steps.push_back(step.facts()); },
+        console.progress());
+    return info;
+}
+
 // What other commands read is no mystery.
 std::string adviceFor(const fs::path& path) {
     const std::string extension = toLower(path.extension().string());
@@ -103,10 +124,11 @@ std::string adviceFor(const fs::path& path) {
 class Info : public Command {
   public:
     Info()
-        : Command({"info", "FILE", "what is in an image, a mesh, a .vdb or a pyramid",
+        : Command({"info", "FILE", "what is in an image, a mesh, a .vdb, a pyramid or curves",
                    "Prints size, spacing, orientation and the range of values of an image; counts and bounds "
                    "of a "
-                   "mesh; the grids of a .vdb; a table of the steps of a pyramid."}) {
+                   "mesh; the grids of a .vdb; a table of the steps of a pyramid, of a solid (.vdb, .iwz) or "
+                   "of curves (.iwc)."}) {
         declareFeatures(options_, level_);
         declareJson();
         declareImage(options_, solid_);
@@ -126,6 +148,7 @@ class Info : public Command {
 
   private:
     void tellOf(const fs::path& path, Console& console) {
+        if (curves2d::isPyramidPath(path)) return show(console, curvesInfo(path, console));
         switch (lod::kindOf(path, solid_)) {
             case lod::InputKind::image:
                 show(console, imageInfo(path, solid_, console));

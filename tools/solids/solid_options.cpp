@@ -8,8 +8,6 @@
 namespace isowave::tools {
 namespace {
 
-constexpr double kBytesPerGigabyte = 1e9;
-
 // What describes a headerless image; the library says what is missing.
 RawLayout& raw(SolidOptions& solid) {
     if (!solid.image.raw) solid.image.raw.emplace();

@@ -53,4 +53,8 @@ void refuseCrease(const std::optional<double>& angle, std::string_view scheme) {
                          " has no creases");
 }
 
+void requireMeshName(const std::filesystem::path& output) {
+    asked("-o", [&] { return subdivision::polygonFormatOf(output); });
+}
+
 }  // namespace isowave::tools

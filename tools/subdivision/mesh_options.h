@@ -20,6 +20,8 @@ subdivision::PolygonMesh readAndRemark(const std::filesystem::path& path, Consol
 const subdivision::MeshScheme& schemeWanted(const std::string& name);
 std::string_view variantWanted(const subdivision::MeshScheme& scheme, const std::string& name);
 void declareCrease(OptionList& options, std::optional<double>& angle);  // degrees
+// Before the work. Throws UsageError for a name that is none of a polygon mesh: of an output that is wrong usage, not bad data.
+void requireMeshName(const std::filesystem::path& output);
 // What --limit asks for.
 inline subdivision::Positions positionsOf(bool limit) {
     return limit ? subdivision::Positions::limit : subdivision::Positions::control;

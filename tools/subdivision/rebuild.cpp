@@ -143,7 +143,7 @@ int Rebuild::run(Console& console) {
 
 int Rebuild::runMesh(Console& console) {
     Hierarchy hierarchy = loadHierarchy(*details_, depth_);  // first: it is what says that a mesh is meant
-    polygonFormatOf(*output_);                               // a wrong name is found before the work
+    requireMeshName(*output_);
     openJson();
     requireBase(arguments[0], *details_, hierarchy);
     const RebuildOptions options = rebuildOptions(hierarchy);

@@ -114,7 +114,7 @@ int Reverse::run(Console& console) {
     refuseContradictions();
     const MeshScheme& scheme = schemeWanted(scheme_);
     const DecomposeOptions options = decomposeOptions(scheme);
-    polygonFormatOf(*output_);  // a wrong name is found before the work
+    requireMeshName(*output_);
     openJson();
     const PolygonMesh mesh = readAndRemark(input, console);
     Hierarchy hierarchy = [&] {

@@ -55,7 +55,7 @@ PolygonMesh Subdivide::coarse(Console& console) const {
 int Subdivide::run(Console& console) {
     const MeshScheme& scheme = schemeWanted(scheme_);
     refuseCrease(creaseAngle_, scheme.name);
-    polygonFormatOf(*output_);  // a wrong name is found before the work
+    requireMeshName(*output_);
     openJson();
     const PolygonMesh before = coarse(console);
     const PolygonMesh mesh = [&] {

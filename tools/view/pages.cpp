@@ -10,6 +10,7 @@
 #include "base/polygon_triangles.h"
 #include "base/read_file.h"
 #include "base/text.h"
+#include "curves2d/file/pyramid_file.h"
 #include "curves2d/polygon_input.h"
 #include "io/mesh/equal_points.h"
 #include "io/vector/svg.h"
@@ -287,6 +288,14 @@ PagePointer pageOfFile(const fs::path& path, Console& console) {
     if ((extension == ".vdb" || extension == ".iwz") && lod::kindOf(path, {}) == lod::InputKind::pyramid)
         return pageOfPyramid(path, console);
     if (const auto text = cadModelText(path)) throw InputError(path.string(), *text);
+    if (curves2d::isPyramidPath(path)) {
+        const std::string folder = inShell((path.parent_path() / path.stem()).string());
+        throw InputError(
+            path.string(),
+            fmt::format("is a pyramid of curves; write its levels first, then show them: isowave "
+                        "curves {} -o {} && isowave view {}",
+                        inShell(path.string()), folder, folder));
+    }
     throw InputError(
         path.string(),
         "is nothing that view shows: a folder of isowave lod or curves, a pyramid, a packed solid, a mesh, "

@@ -59,21 +59,22 @@ TEST_F(BadImage, MissingOrEmpty) {
     for (const char* name : {"e.nrrd", "e.nii", "e.nii.gz", "e.mha", "e.tif", "e.png", "e.dcm", "e"})
         EXPECT_THAT(refusal(put(folder / name, "")), HasSubstr("is empty")) << name;
     fs::create_directory(folder / "none");
-    EXPECT_THAT(refusal(folder / "none"), HasSubstr("is a folder without DICOM, TIFF or PNG slices"));
+    EXPECT_THAT(refusal(folder / "none"),
+                HasSubstr("is a folder without DICOM, TIFF, PNG, BMP or JPEG slices"));
     EXPECT_THAT(refusal("/dev/null"), HasSubstr("is neither a file nor a folder"));
     EXPECT_THAT(refusal(put(folder / "a.abc", "what?")), HasSubstr("is of no known image format"));
 }
 
 TEST_F(BadImage, GarbageUnderAGoodName) {
-    for (const char* name :
-         {"g.nrrd", "g.nhdr", "g.nii", "g.nii.gz", "g.mha", "g.mhd", "g.tif", "g.png", "g.dcm"}) {
+    for (const char* name : {"g.nrrd", "g.nhdr", "g.nii", "g.nii.gz", "g.mha", "g.mhd", "g.tif", "g.png",
+                             "g.bmp", "g.jpg", "g.dcm"}) {
         EXPECT_NE(refusal(put(folder / name, std::string(2000, '\xA5'))), "") << name;
         EXPECT_NE(refusal(put(folder / name, "hello\n")), "") << name;
     }
 }
 
 TEST_F(BadImage, Flat) {
-    for (const std::string name : {"a.png", "a.tif", "a.nrrd", "a.mha", "a.nii"}) {
+    for (const std::string name : {"a.png", "a.bmp", "a.jpg", "a.tif", "a.nrrd", "a.mha", "a.nii"}) {
         test::writeItk(test::patternImage<unsigned char, 2>({7, 5}).GetPointer(), folder / name);
         EXPECT_THAT(refusal(folder / name), HasSubstr("is a 2D image (7 x 5); expected a volume")) << name;
     }
@@ -102,8 +103,19 @@ TEST_F(BadImage, Colours) {
     slice->SetRegions(Rgb2::RegionType({7, 5}));
     slice->Allocate(true);
     fs::create_directory(folder / "stack");
-    test::writeItk(slice.GetPointer(), folder / "stack" / "1.png");
-    EXPECT_THAT(refusal(folder / "stack"), AllOf(HasSubstr("1.png"), HasSubstr("RGB")));
+    for (const char* name : {"1.png", "1.bmp", "1.jpg"}) {
+        fs::remove_all(folder / "stack");
+        fs::create_directory(folder / "stack");
+        itk::RGBPixel<unsigned char> red;
+        red.Set(200, 100, 100);
+        slice->FillBuffer(red);
+        test::writeItk(slice.GetPointer(), folder / "stack" / name);
+        EXPECT_THAT(refusal(folder / "stack"), AllOf(HasSubstr(name), HasSubstr("RGB")));
+        red.Set(100, 100, 100);
+        slice->FillBuffer(red);
+        test::writeItk(slice.GetPointer(), folder / "stack" / name);
+        EXPECT_EQ(refusal(folder / "stack").empty(), name != std::string("1.png")) << name;
+    }
 }
 
 // An option that chooses among what the format cannot hold is not passed over.
@@ -257,6 +269,14 @@ TEST_F(BadImage, SlicesThatDiffer) {
     EXPECT_THAT(refusal(folder), HasSubstr("2.png: is empty"));
     test::writeItk(test::patternImage<unsigned char, 2>({7, 5}).GetPointer(), folder / "2.tif");
     EXPECT_THAT(refusal(folder), HasSubstr("holds 2 PNG and 1 TIFF slices"));
+    const fs::path other = folder / "other";
+    fs::create_directory(other);
+    test::writeItk(test::patternImage<unsigned char, 2>({7, 5}).GetPointer(), other / "1.jpg");
+    test::writeItk(test::patternImage<unsigned char, 2>({7, 6}).GetPointer(), other / "2.jpg");
+    EXPECT_THAT(refusal(other),
+                HasSubstr("2.jpg: is a slice of 7 x 6 x 1 but the first, 1.jpg, is 7 x 5 x 1"));
+    test::writeItk(test::patternImage<unsigned char, 2>({7, 6}).GetPointer(), other / "2.bmp");
+    EXPECT_THAT(refusal(other), HasSubstr("holds 2 JPEG and 1 BMP slices"));
 }
 
 // ---- truncations
@@ -358,6 +378,18 @@ TEST_F(Truncation, OfAPngSlice) {
     test::writeItk(test::patternImage<unsigned short, 2>({37, 25}).GetPointer(), stack / "2.png");
     sweep(stack / "1.png", stack);
     sweep(stack / "2.png", stack);
+}
+
+TEST_F(Truncation, OfABmpOrJpegSlice) {
+    for (const std::string extension : {".bmp", ".jpg"}) {
+        const fs::path stack = folder / extension.substr(1);
+        fs::create_directory(stack);
+        for (const char* name : {"1", "2"})
+            test::writeItk(test::patternImage<unsigned char, 2>({37, 25}).GetPointer(),
+                           stack / (name + extension));
+        sweep(stack / ("1" + extension), stack);
+        sweep(stack / ("2" + extension), stack);
+    }
 }
 
 // ---- corruptions

@@ -136,7 +136,7 @@ TEST_F(ImageFormat, IntegersBeyondFloat32AreCounted) {
                 ElementsAre("2 of 4 int32 voxels are too large for float32 and were rounded"));
 }
 
-// ---- TIFF and PNG
+// ---- TIFF, PNG, BMP and JPEG
 
 template <class T>
 void writeSlices(const fs::path& folder, const std::string& extension,
@@ -164,6 +164,46 @@ TEST_F(ImageFormat, SlicesStackInTheOrderOfTheirNumbers) {
         EXPECT_EQ(image.format, extension == ".png" ? "PNG slices" : "TIFF slices");
         expectPattern<unsigned short>(image);
     }
+}
+
+TEST_F(ImageFormat, SlicesOfBmpAreTheirGreyValues) {
+    writeSlices<unsigned char>(folder, ".bmp", {"s_2", "s_9", "s_10"});
+    const Image image = readImage(folder);
+    EXPECT_EQ(image.size, (Size{7, 5, 3}));
+    EXPECT_EQ(image.componentType, "uint8");
+    EXPECT_EQ(image.format, "BMP slices");
+    EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("no z spacing in BMP slices")));
+    expectPattern<unsigned char>(image);
+}
+
+// Every value is the one that ITK, by libjpeg as well, decodes.
+TEST_F(ImageFormat, SlicesOfJpegAreTheirGreyValuesWithAWarning) {
+    writeSlices<unsigned char>(folder, ".jpg", {"s_2", "s_9", "s_10"});
+    const Image image = readImage(folder);
+    EXPECT_EQ(image.size, (Size{7, 5, 3}));
+    EXPECT_EQ(image.componentType, "uint8");
+    EXPECT_EQ(image.format, "JPEG slices");
+    EXPECT_THAT(image.warnings, testing::UnorderedElementsAre(HasSubstr("JPEG is lossy"),
+                                                              HasSubstr("no z spacing in JPEG slices")));
+    std::size_t k = 0;
+    for (const char* name : {"s_2.jpg", "s_9.jpg", "s_10.jpg"}) {
+        using Slice = itk::Image<unsigned char, 2>;
+        const auto slice = test::readItk<Slice>(folder / name);
+        for (itk::ImageRegionIterator<Slice> i(slice, slice->GetLargestPossibleRegion()); !i.IsAtEnd();
+             ++i, ++k)
+            ASSERT_EQ(image.values[k], i.Get()) << name << " " << k;
+    }
+    EXPECT_EQ(k, image.values.size());
+}
+
+// Scanners put a preview beside the slices.
+TEST_F(ImageFormat, ABmpOrJpegBesideOtherSlicesIsLeftAlone) {
+    const std::vector<std::string> names = {"a", "b"};
+    writeSlices<unsigned char>(folder, ".png", names);
+    test::writeItk(test::patternImage<unsigned char, 2>({9, 9}).GetPointer(), folder / "preview.jpg");
+    test::writeItk(test::patternImage<unsigned char, 2>({9, 9}).GetPointer(), folder / "preview.bmp");
+    EXPECT_EQ(readImage(folder).format, "PNG slices");
+    expectPattern<unsigned char>(readImage(folder));
 }
 
 TEST_F(ImageFormat, SlicesSayThatTheirHeightIsAssumed) {
@@ -254,8 +294,8 @@ TEST_F(ImageFormat, NiftiValuesAreScaled) {
 }
 
 TEST_F(ImageFormat, IsKnownByNameOrContent) {
-    for (const char* name :
-         {"a.nii", "a.nii.gz", "a.NRRD", "a.nhdr", "a.mha", "a.mhd", "a.tif", "a.tiff", "a.png", "a.dcm"})
+    for (const char* name : {"a.nii", "a.nii.gz", "a.NRRD", "a.nhdr", "a.mha", "a.mhd", "a.tif", "a.tiff",
+                             "a.png", "a.bmp", "a.jpg", "a.JPEG", "a.dcm"})
         EXPECT_TRUE(isImagePath(name)) << name;
     EXPECT_TRUE(isImagePath(folder));
     EXPECT_TRUE(isImagePath(put(folder / "IM0001", std::string(128, '\0') + "DICM")));

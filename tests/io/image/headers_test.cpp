@@ -525,9 +525,13 @@ TEST_F(Headers, ForeignFilesAreNamedWithWhatToDo) {
     expect("b.am", "# AmiraMesh", "NRRD");
     expect("b.vts", "<VTKFile>", "ParaView");
     expect("b.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", "meshio convert");
-    fs::create_directory(folder / "bmp");
-    put(folder / "bmp" / "1.bmp", "BM");
-    EXPECT_THAT(refusal(folder / "bmp"), AllOf(HasSubstr("holds 1 slices as .bmp"), HasSubstr("mogrify")));
+    fs::create_directory(folder / "gif");
+    put(folder / "gif" / "1.gif", "GIF89a");
+    EXPECT_THAT(refusal(folder / "gif"), AllOf(HasSubstr("holds 1 slices as .gif"), HasSubstr("mogrify")));
+    fs::create_directory(folder / "gz");
+    put(folder / "gz" / "1.tif.gz", gzip("II*"));
+    EXPECT_THAT(refusal(folder / "gz"),
+                AllOf(HasSubstr("holds 1 files compressed by gzip"), HasSubstr("/*.gz")));
 }
 
 // ---- any format

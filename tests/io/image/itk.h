@@ -1,12 +1,14 @@
 // Images written and read by ITK itself, for the tests of isowave/image.h.
 #pragma once
 
+#include <itkBMPImageIO.h>
 #include <itkExtractImageFilter.h>
 #include <itkImage.h>
 #include <itkImageFileReader.h>
 #include <itkImageFileWriter.h>
 #include <itkImageRegionIterator.h>
 #include <itkImageRegionIteratorWithIndex.h>
+#include <itkJPEGImageIO.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -25,6 +27,8 @@ inline itk::ImageIOBase::Pointer itkReaderFor(const std::filesystem::path& path)
     if (name.ends_with(".mha") || name.ends_with(".mhd")) return itk::MetaImageIO::New();
     if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return itk::NiftiImageIO::New();
     if (name.ends_with(".tif")) return itk::TIFFImageIO::New();
+    if (name.ends_with(".bmp")) return itk::BMPImageIO::New();
+    if (name.ends_with(".jpg")) return itk::JPEGImageIO::New();
     if (name.ends_with(".png")) return itk::PNGImageIO::New();
     return itk::NrrdImageIO::New();
 }
