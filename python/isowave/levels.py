@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -76,7 +76,7 @@ def _check_dropping(threshold: Optional[float], keep: Optional[int]) -> None:
 class CurveDetails:
     """Curves taken apart: the coarsest level of each, and the details that lead back. What ``curve-levels --details`` writes."""
 
-    def __init__(self, native: _native.Curves, remarks: Sequence[str] = ()) -> None:
+    def __init__(self, native: _native.CurveDetails, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave curve-levels --json`` writes; None for one that was loaded.
         self.report: Optional[dict[str, Any]] = None
@@ -86,7 +86,7 @@ class CurveDetails:
     @classmethod
     def load(cls, path: PathLike) -> CurveDetails:
         """Reads a file of save() or of ``isowave curve-levels --details``. Raises InputError."""
-        return cls(_native.load_curves(os.fspath(path), Watch()))
+        return cls(_native.load_curve_details(os.fspath(path), Watch()))
 
     def save(self, path: PathLike) -> None:
         """The file of details, as ``isowave curve-levels --details`` writes it; it appears whole or not at all."""
@@ -184,9 +184,6 @@ def curve_levels(
     return CurveDetails(native, watch.remarks)
 
 
-Heights = Union[PathLike, npt.ArrayLike]
-
-
 def _heights(heights: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
     values = np.ascontiguousarray(heights, dtype=np.float64)
     if values.ndim not in (2, 3) or (values.ndim == 3 and not 1 <= values.shape[2] <= 4):
@@ -197,7 +194,7 @@ def _heights(heights: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
 class ReliefDetails:
     """Heights taken apart: the coarsest level, and the details that lead back. What ``relief --details`` writes."""
 
-    def __init__(self, native: _native.Relief, remarks: Sequence[str] = ()) -> None:
+    def __init__(self, native: _native.ReliefDetails, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave relief --json`` writes; None for one that was loaded.
         self.report: Optional[dict[str, Any]] = None
@@ -207,7 +204,7 @@ class ReliefDetails:
     @classmethod
     def load(cls, path: PathLike) -> ReliefDetails:
         """Reads a file of save() or of ``isowave relief --details``. Raises InputError."""
-        return cls(_native.load_relief(os.fspath(path), Watch()))
+        return cls(_native.load_relief_details(os.fspath(path), Watch()))
 
     def save(self, path: PathLike) -> None:
         """The file of details, as ``isowave relief --details`` writes it; it appears whole or not at all."""
@@ -255,7 +252,7 @@ class ReliefDetails:
 
 
 def relief(
-    heights: Heights,
+    heights: Any,
     *,
     scheme: str = "butterfly-3",
     depth: int = 2,

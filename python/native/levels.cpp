@@ -207,7 +207,7 @@ py::tuple rebuiltRelief(const MadeRelief& made, int depth, const std::optional<P
 }  // namespace
 
 void bindLevels(py::module_& module) {
-    py::class_<MadeCurves, CurvesPointer>(module, "Curves")
+    py::class_<MadeCurves, CurvesPointer>(module, "CurveDetails")
         .def_property_readonly(
             "scheme",
             [](const MadeCurves& made) { return made.set.scheme.empty() ? made.set.mask : made.set.scheme; })
@@ -220,8 +220,8 @@ void bindLevels(py::module_& module) {
             saveBytes(curveDetailsBytes(made.set), path);
         });
     module.def("curve_levels", curveLevels);
-    module.def("load_curves", loadCurves);
-    py::class_<MadeRelief, ReliefPointer>(module, "Relief")
+    module.def("load_curve_details", loadCurves);
+    py::class_<MadeRelief, ReliefPointer>(module, "ReliefDetails")
         .def_property_readonly("scheme", [](const MadeRelief& made) { return made.details.scheme(); })
         .def_property_readonly("levels", [](const MadeRelief& made) { return made.details.levels(); })
         .def_property_readonly("report", [](const MadeRelief& made) { return made.report; })
@@ -229,7 +229,7 @@ void bindLevels(py::module_& module) {
         .def("rebuild", rebuiltRelief)
         .def("save", [](const MadeRelief& made, const fs::path& path) { saveBytes(made.bytes, path); });
     module.def("relief", relief);
-    module.def("load_relief", loadRelief);
+    module.def("load_relief_details", loadRelief);
 }
 
 }  // namespace isowave::python
