@@ -210,7 +210,7 @@ def test_every_option_of_the_command_is_an_argument():
 
     parameters = set(inspect.signature(isowave.Pyramid.edit).parameters)
     taken = {name[2:] for name in _native.edit_option_names()}
-    assert {name.replace("with", "with_") for name in taken - {"by"}} <= parameters
+    assert {name.replace("with", "with_").replace("-", "_") for name in taken - {"by"}} <= parameters
     shown = command("edit", "--help").stdout
     names = set(re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE))
     assert len(taken) > 6 and names - taken - {"help"} == {"output", "json", "threads", "quiet", "verbose", "progress"}
