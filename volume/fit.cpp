@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "isowave/error.h"
-#include "volume/fit/fit_part.h"
 #include "volume/fit/known.h"
 #include "volume/fit/repair.h"
 #include "volume/leaf_words.h"

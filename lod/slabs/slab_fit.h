@@ -15,7 +15,7 @@
 #include "lod/fitting.h"
 #include "lod/slabs/slab_cuts.h"
 #include "lod/slabs/slab_store.h"
-#include "volume/fit/fit_part.h"
+#include "volume/fit.h"
 #include "volume/image_solid.h"
 #include "wavelets/pyramid.h"
 

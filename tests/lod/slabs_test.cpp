@@ -123,7 +123,8 @@ TEST_F(Slabs, GiveTheSameLevelsAndReports) {
                       makeLadder(open(largeGyroid(), {.iso = 0}), plain));
     // By default, of a box with walls 3 voxels thick.
     const Image box = imageOf({60, 50, 70}, [](int x, int y, int z) {
-        const double d = std::max({std::abs(x - 29.6) - 24, std::abs(y - 24.4) - 18, std::abs(z - 34.3) - 28});
+        const double d =
+            std::max({std::abs(x - 29.6) - 24, std::abs(y - 24.4) - 18, std::abs(z - 34.3) - 28});
         return std::lround(20 * std::clamp(1.5 - std::abs(d), -4.0, 4.0));
     });
     expectSameLadders(makeLadder(open(box, in(5)), {.levels = StepRange{0, 2}}),
