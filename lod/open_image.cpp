@@ -197,14 +197,26 @@ ImageSolid shapeOf(const ImagePlan& plan, const SeenImage& seen, const SolidOpti
     return {.iso = plan.iso, .invert = options.invert, .label = seen.label, .openBorder = options.openBorder};
 }
 
-// Size and time of a file, so that nobody goes on with slabs of what it was.
-std::string stampOf(const std::string& name) {
+template <class T>
+std::string textOf(const std::optional<T>& option) {
+    return option ? fmt::format("{}", *option) : "-";
+}
+
+// Size and time of a file and all that chooses what is read of it, so that nobody goes on with slabs of what it was.
+std::string stampOf(const std::string& name, const ImageReadOptions& options) {
     std::error_code error;
     const auto time = std::filesystem::last_write_time(name, error);
     if (error) return {};
     const auto size =
         std::filesystem::is_regular_file(name, error) ? std::filesystem::file_size(name, error) : 0;
-    return fmt::format("{} {} {}", name, size, time.time_since_epoch().count());
+    std::string raw = "-";
+    if (const auto& layout = options.raw)
+        raw = fmt::format("{} {} {} {}", fmt::join(layout->size, "x"), layout->type, layout->bigEndian,
+                          layout->headerBytes);
+    return fmt::format("{} {} {}; {} {} {} {} {} {} {} {}", name, size, time.time_since_epoch().count(), raw,
+                       textOf(options.series), textOf(options.volume), textOf(options.nan),
+                       textOf(options.stack), textOf(options.channel), textOf(options.time),
+                       options.resampleSlices);
 }
 
 constexpr const char* kNoSurface = "the image holds nothing but inside or nothing but outside";
@@ -241,7 +253,8 @@ void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, co
                                refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points),
                                               limit, "take more --slabs");
                            }};
-    SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask), stampOf(solid.name())};
+    SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask),
+                  stampOf(solid.name(), options.image)};
     if (work.folder.empty()) work.folder = std::filesystem::temp_directory_path();
     solid.slabs =
         std::make_shared<SlabbedField>(std::move(*seen.stream), plan, *options.slabs, work, progress);
@@ -350,6 +363,14 @@ std::array<std::array<double, 3>, 3> directionOf(const Image& image) {
     return rows;
 }
 
+std::string rangeText(const ImageStatistics& statistics) {
+    std::string text = fmt::format("{:g} to {:g} (", statistics.low, statistics.high);
+    for (const auto& [percent, value] : statistics.percentiles)
+        text += fmt::format("{}{} % below {:g}", percent == statistics.percentiles.front().first ? "" : ", ",
+                            percent, value);
+    return text + ")";
+}
+
 }  // namespace isowave::lod
 
 namespace isowave {
@@ -360,15 +381,3 @@ std::string runSlabTask(const std::filesystem::path& image, const SolidOptions& 
 }
 
 }  // namespace isowave
-
-namespace isowave::lod {
-
-std::string rangeText(const ImageStatistics& statistics) {
-    std::string text = fmt::format("{:g} to {:g} (", statistics.low, statistics.high);
-    for (const auto& [percent, value] : statistics.percentiles)
-        text += fmt::format("{}{} % below {:g}", percent == statistics.percentiles.front().first ? "" : ", ",
-                            percent, value);
-    return text + ")";
-}
-
-}  // namespace isowave::lod

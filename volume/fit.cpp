@@ -89,9 +89,7 @@ Mask nodesNear(const openvdb::FloatTree& distance, float band) {
     return nodes;
 }
 
-}  // namespace
-
-namespace {
+// ---- before the repair
 
 // ±K on I, smoothed; a source's lattice point i is i + shift of the field.
 BSplineField smoothedSigns(const NodeCollection& nodes, const Mask& known, const openvdb::Coord& shift,

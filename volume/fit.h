@@ -52,7 +52,7 @@ BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOp
 //
 // How far beyond, on each side: kFitReach lattice points, and one for each pass of the repair. The chain, from the box outwards: the
 // signs that are counted, 1, of control points 1, that a pass moves by those 1 beside them; quasi-interpolation 1 (smoothing 3);
-// what is known 4, of distances that crossings 5 away give, in leaves of 8.
+// what is known 4, of distances that crossings 4 away give, in leaves of 8.
 inline constexpr int kFitReach = 24;
 // options.mostRepairPasses: as many as the input reaches beyond the box, less kFitReach. options.adjust is not called.
 // repair: what it did in the box, which is in whole leaves.

@@ -446,10 +446,6 @@ void writeContent(AtomicFile& file, const openvdb::GridCPtrVec& grids, openvdb::
     stream.write(uuid.data(), kUuidLength);
 }
 
-}  // namespace
-
-namespace {
-
 void writeWhole(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
                 const openvdb::MetaMap& metadata, bool wait) {
     initializeVdb();

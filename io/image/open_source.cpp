@@ -91,7 +91,7 @@ const std::vector<fs::path>* slicesAmong(const fs::path& folder,
     return nullptr;
 }
 
-// Slices lie in the folder itself; DICOM, which names its series, may lie in folders below.
+// Files lie in the folder itself, or, where none does, in folders below.
 SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     if (isZarr(folder)) return openZarr(folder, options);
     const auto here = filesByKind(fs::directory_iterator(folder));
@@ -102,6 +102,8 @@ SourcePtr openFolder(const fs::path& folder, const ImageReadOptions& options) {
     const auto below = filesByKind(fs::recursive_directory_iterator(folder));
     if (const auto dicom = below.find(FileKind::dicom); dicom != below.end())
         return openDicomFolder(folder, dicom->second, options);
+    if (const std::vector<fs::path>* slices = slicesAmong(folder, below))
+        return openSliceFiles(folder, *slices, options);
     throw InputError(folder.string(), foreignText(folder).value_or(
                                           "is a folder without DICOM, TIFF, PNG, BMP or JPEG slices"));
 }

@@ -109,16 +109,10 @@ std::int64_t countDiffering(const BSplineField& a, const BSplineField& b, double
 
 // World; of what is known.
 PointBox boxAround(const BSplineField& field) {
-    const openvdb::CoordBBox known = field.controlPoints->evalActiveVoxelBoundingBox();
-    PointBox box;
-    for (int corner = 0; corner < 8; ++corner) {
-        openvdb::Vec3d p;
-        for (int axis = 0; axis < 3; ++axis)
-            p[axis] = corner >> axis & 1 ? known.max()[axis] : known.min()[axis];
-        const openvdb::Vec3d world = field.transform().indexToWorld(p);
-        box.add({world.x(), world.y(), world.z()});
-    }
-    return box;
+    const openvdb::BBoxd known =
+        field.transform().indexToWorld(field.controlPoints->evalActiveVoxelBoundingBox());
+    return {{known.min().x(), known.min().y(), known.min().z()},
+            {known.max().x(), known.max().y(), known.max().z()}};
 }
 
 MeshTopology measured(const BSplineField& field, const Progress& progress) {

@@ -20,6 +20,12 @@ void forRanges(std::size_t count, const Progress& progress, const Each& each) {
     });
 }
 
+// i times 2^halvings, cut where an int ends: a damaged file may halve an axis any number of times.
+int timesTwo(int i, int halvings) {
+    constexpr double kMost = std::numeric_limits<int>::max();
+    return static_cast<int>(std::clamp(std::ldexp(double(i), halvings), -kMost, kMost));
+}
+
 int stepsBetween(const Halvings& finer, const Halvings& coarser) {
     return coarser[0] - finer[0] + coarser[1] - finer[1] + coarser[2] - finer[2];
 }
@@ -103,16 +109,6 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
                         static_cast<std::int64_t>(static_cast<double>(follow) / share);
     collapseByQuadrics(mesh, options, nullptr, progress);
 }
-
-namespace {
-
-// i times 2^halvings, cut where an int ends: a damaged file may halve an axis any number of times.
-int timesTwo(int i, int halvings) {
-    constexpr double kMost = std::numeric_limits<int>::max();
-    return static_cast<int>(std::clamp(std::ldexp(double(i), halvings), -kMost, kMost));
-}
-
-}  // namespace
 
 std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& progress) const {
     std::vector<openvdb::Coord> points;

@@ -6,9 +6,10 @@ namespace {
 constexpr int kLeaf = 8;
 constexpr int kFar = 1 << 29;  // further than any lattice point, and a multiple of 8
 
-void addCut(std::vector<int>& at, int cut, int first) {
+// At the nearest place between leaves, unless that is not beyond 0 and the last one.
+void addCut(std::vector<int>& at, int cut) {
     const int rounded = (cut + kLeaf / 2) & ~(kLeaf - 1);
-    if (rounded > (at.empty() ? first : at.back())) at.push_back(rounded);
+    if (rounded > (at.empty() ? 0 : at.back())) at.push_back(rounded);
 }
 
 }  // namespace
@@ -17,7 +18,7 @@ SlabCuts SlabCuts::even(int axis, std::int64_t size, int slabs) {
     SlabCuts cuts{axis, {}};
     for (int i = 1; i < slabs; ++i) {
         const auto cut = static_cast<int>(size * i / slabs);
-        if (cut + kLeaf / 2 < size) addCut(cuts.at, cut, 0);
+        if (cut + kLeaf / 2 < size) addCut(cuts.at, cut);
     }
     return cuts;
 }
@@ -31,7 +32,7 @@ LeafBox SlabCuts::box(int slab) const {
 
 SlabCuts SlabCuts::halved() const {
     SlabCuts cuts{axis, {}};
-    for (const int cut : at) addCut(cuts.at, cut / 2, 0);
+    for (const int cut : at) addCut(cuts.at, cut / 2);
     return cuts;
 }
 

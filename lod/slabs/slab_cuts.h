@@ -20,8 +20,6 @@ struct SlabCuts {
     LeafBox box(int slab) const;
     // The same places once the axis has been halved, as near as leaves allow; slabs that are too thin then are joined.
     SlabCuts halved() const;
-
-    friend bool operator==(const SlabCuts&, const SlabCuts&) = default;
 };
 
 }  // namespace isowave::lod

@@ -45,38 +45,37 @@ bool knowsOutside(const Shape& shape) {
     return false;
 }
 
-}  // namespace
-
-SlabSlices slicesOf(const SlabFitPlan& plan, int slab, int passes) {
+// Slices z0 <= z < z1 that a slab reads for so many passes; z0 is a multiple of 8.
+struct Slices {
+    std::int64_t z0, z1;
+};
+Slices slicesOf(const SlabFitPlan& plan, int slab, int passes) {
     const std::int64_t reach = kFitReach + passes;
     const LeafBox box = plan.cuts.box(slab);
     const std::int64_t low = std::max<std::int64_t>(0, box.min().z() - reach) & ~std::int64_t{7};
     return {low, std::min<std::int64_t>(plan.depth, box.max().z() + 1 + reach)};
 }
 
-BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int passes, SlabFitted& fitted,
-                     const Progress& progress) {
-    const openvdb::Coord first(0, 0, static_cast<int>(slicesOf(plan, slab, passes).z0));
+}  // namespace
+
+SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                   const Progress& progress) {
+    const Slices slices = slicesOf(plan, slab, passes);
+    stream.showSlices(slices.z0, slices.z1);
+    const openvdb::Coord first(0, 0, static_cast<int>(slices.z0));
     LeafBox box = plan.cuts.box(slab);
     if (slab > 0) box.min() -= first;
     if (slab + 1 < plan.cuts.count()) box.max() -= first;
-    BSplineField part = partOf(fitPart(stream, plan, box, passes, fitted.repair, progress), box, first);
+    SlabFitted told;
+    BSplineField part = partOf(fitPart(stream, plan, box, passes, told.repair, progress), box, first);
     const auto transform = linearTransform(plan.indexToWorld, "image");
     part.controlPoints->setTransform(transform);
     part.shape->setTransform(transform->copy());
-    fitted.extent = wavelets::FieldExtent::of(part);
-    fitted.K = part.K;
-    fitted.inside = pointsInside(*part.shape);
-    fitted.outside = knowsOutside(*part.shape);
-    return part;
-}
-
-SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab,
-                       int passes, const Progress& progress) {
-    const SlabSlices slices = slicesOf(plan, slab, passes);
-    stream.showSlices(slices.z0, slices.z1);
-    SlabFitted told;
-    store.putFitted(slab, fitSlab(stream, plan, slab, passes, told, progress));
+    told.extent = wavelets::FieldExtent::of(part);
+    told.K = part.K;
+    told.inside = pointsInside(*part.shape);
+    told.outside = knowsOutside(*part.shape);
+    store.putFitted(slab, part);
     return told;
 }
 

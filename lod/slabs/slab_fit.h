@@ -5,7 +5,6 @@
 // made fewer, they are fitted once more, with more slices.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -42,20 +41,10 @@ struct SlabFitted {
     bool outside = false;     // whether a known lattice point is outside
 };
 
-// Slices z0 <= z < z1 that a slab reads for so many passes.
-struct SlabSlices {
-    std::int64_t z0, z1;
-};
-SlabSlices slicesOf(const SlabFitPlan& plan, int slab, int passes);
-
-// Lattice point i of the part is voxel i of the image: the origin is not moved yet. stream: shows slicesOf().
-// Throws UsageError for a fit that works on the whole only (Fitting of masks).
-BSplineField fitSlab(ImageStream& stream, const SlabFitPlan& plan, int slab, int passes, SlabFitted& fitted,
-                     const Progress& progress);
-
-// The task: shows the stream the slab's slices, and puts the part into the store.
-SlabFitted fitSlabInto(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab,
-                       int passes, const Progress& progress);
+// The task: a slab's part into the store. Its lattice point i is voxel i of the image: the origin is not moved yet. The stream shows
+// the slab's slices afterwards. Throws UsageError for a fit that works on the whole only (that of masks).
+SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                   const Progress& progress);
 
 // What the whole image's fit reports; nothing where it takes more passes than these slabs made.
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes);

@@ -1,7 +1,5 @@
 #include "lod/slabs/slab_steps.h"
 
-#include <algorithm>
-
 #include "volume/fit/known.h"
 #include "volume/linear_transform.h"
 #include "wavelets/part_direction.h"

@@ -18,8 +18,6 @@ namespace isowave::lod {
 
 struct SlabGrid {
     SlabCuts rows{2, {}}, columns{1, {}};  // along z and y
-
-    friend bool operator==(const SlabGrid&, const SlabGrid&) = default;
 };
 
 struct SlabPhase {

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.h"
+#include "base/read_file.h"
 #include "isowave/error.h"
+#include "volume/content_hash.h"
 #include "volume/vdb_file.h"
 
 namespace isowave::lod {
@@ -14,6 +17,7 @@ constexpr const char* kControlPoints = "control_points";
 constexpr const char* kShape = "shape";
 constexpr const char* kDetails = "details";
 constexpr const char* kK = "isowave:K";
+const std::string kTold = "told_";
 
 template <class Grid>
 openvdb::GridBase::ConstPtr named(const typename Grid::Ptr& grid, const char* name) {
@@ -67,6 +71,22 @@ SlabStore::SlabStore(fs::path folder) : folder_(std::move(folder)) {
                                                    "); slabs are kept there between the phases of a job");
 }
 
+void SlabStore::begin(const std::string& job) const {
+    const fs::path path = folder_ / "job.json";
+    if (fs::exists(path) && readFile(path, "a job in slabs") == job) return;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().filename().string().starts_with(kTold)) forget(entry.path());
+    AtomicFile file(path);
+    file.stream() << job;
+    file.commit();
+}
+
+fs::path SlabStore::toldPath(const std::string& task) const {
+    ContentHash hash;
+    hash.add(task.data(), task.size());
+    return folder_ / (kTold + hash.hex() + ".json");
+}
+
 fs::path SlabStore::fittedPath(int slab) const { return folder_ / fmt::format("fit_{}.vdb", slab); }
 fs::path SlabStore::fieldPath(int step, int row, int column) const {
     return folder_ / fmt::format("field_{}_{}_{}.vdb", step, row, column);
@@ -100,7 +120,6 @@ wavelets::DetailGrid::Ptr SlabStore::details(int step, int slab) const {
     return gridOf<wavelets::DetailGrid>(path, parts, kDetails);
 }
 
-void SlabStore::forgetFitted(int slab) const { forget(fittedPath(slab)); }
 void SlabStore::forgetField(int step, int row, int column) const { forget(fieldPath(step, row, column)); }
 
 }  // namespace isowave::lod

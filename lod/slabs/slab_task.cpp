@@ -9,7 +9,6 @@
 
 #include "base/atomic_file.h"
 #include "isowave/error.h"
-#include "volume/content_hash.h"
 #include "wavelets/step_order.h"
 
 namespace isowave::lod {
@@ -174,13 +173,6 @@ std::vector<Told> toldBy(const std::vector<std::string>& texts, std::size_t want
     return told;
 }
 
-// Where a task leaves what it told.
-fs::path toldPath(const fs::path& folder, const std::string& task) {
-    ContentHash hash;
-    hash.add(task.data(), task.size());
-    return folder / ("told_" + hash.hex() + ".json");
-}
-
 std::optional<std::string> toldBefore(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return std::nullopt;
@@ -194,6 +186,10 @@ void tell(const fs::path& path, const std::string& text) {
 }
 
 }  // namespace
+
+std::string jobText(const SlabJob& job, const SlabFitPlan& plan) {
+    return Json{{"image", job.image}, {"mask", job.mask}, {"plan", jsonOf(plan)}}.dump();
+}
 
 std::string fitTask(const SlabJob& job, const SlabFitPlan& plan, int slab, int passes) {
     return taskOf(job, kFit, slab, {{"plan", jsonOf(plan)}, {"passes", passes}});
@@ -214,7 +210,7 @@ std::string runSlabTask(const fs::path& path, const ImageReadOptions& options, c
     const Json task = parsed(text, "task");
     try {
         const SlabStore store(task.at("folder").get<std::string>());
-        const fs::path told = toldPath(store.folder(), text);
+        const fs::path told = store.toldPath(text);
         if (const auto before = toldBefore(told)) return *before;
         const int slab = task.at("slab").get<int>();
         const Json& what = task.at("what");
@@ -223,8 +219,8 @@ std::string runSlabTask(const fs::path& path, const ImageReadOptions& options, c
             ImageStream stream(path, options);
             if (auto mask = task.at("mask").get<std::vector<float>>(); !mask.empty())
                 stream.takeAsMask(std::move(mask));
-            result = jsonOf(fitSlabInto(store, stream, planOf(what.at("plan")), slab,
-                                        what.at("passes").get<int>(), progress))
+            result = jsonOf(fitSlab(store, stream, planOf(what.at("plan")), slab,
+                                    what.at("passes").get<int>(), progress))
                          .dump();
         } else {
             result = jsonOf(halveSlab(store, halvingOf(what), slab, progress)).dump();

@@ -15,9 +15,12 @@ namespace isowave::lod {
 // What all tasks of a job have in common.
 struct SlabJob {
     std::filesystem::path folder;
-    std::string image;        // size and time of the file
+    std::string image;        // size and time of the file, and how it is read
     std::vector<float> mask;  // values that are inside, as ImageStream::takeAsMask() has them
 };
+
+// What tells jobs apart whose files have the same names.
+std::string jobText(const SlabJob& job, const SlabFitPlan& plan);
 
 std::string fitTask(const SlabJob& job, const SlabFitPlan& plan, int slab, int passes);
 std::string halveTask(const SlabJob& job, const SlabHalving& halving, int slab);

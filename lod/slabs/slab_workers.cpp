@@ -6,7 +6,7 @@ std::vector<SlabFitted> SlabsInTurn::fit(const SlabFitPlan& plan, int passes, co
     std::vector<SlabFitted> told;
     for (int slab = 0; slab < plan.cuts.count(); ++slab) {
         progress("fitting", double(slab) / plan.cuts.count());
-        told.push_back(fitSlabInto(store_, *stream_, plan, slab, passes, progress));
+        told.push_back(fitSlab(store_, *stream_, plan, slab, passes, progress));
     }
     return told;
 }
@@ -22,6 +22,7 @@ std::vector<SlabHalved> SlabsInTurn::halve(const SlabHalving& halving, const Pro
 
 std::vector<SlabFitted> SlabsByMap::fit(const SlabFitPlan& plan, int passes, const Progress& progress) {
     progress("fitting", 0);
+    SlabStore(job_.folder).begin(jobText(job_, plan));
     std::vector<std::string> tasks;
     for (int slab = 0; slab < plan.cuts.count(); ++slab) tasks.push_back(fitTask(job_, plan, slab, passes));
     return fittedOf(map_(tasks, progress), tasks.size());

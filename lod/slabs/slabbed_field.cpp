@@ -32,7 +32,7 @@ FitReport withEnoughPasses(const FitAll& fitAll) {
 SlabFolder::SlabFolder(const fs::path& in) {
     static std::atomic<int> next{0};
     std::error_code error;
-    fs::create_directories(in.empty() ? fs::path(".") : in, error);
+    fs::create_directories(in, error);
     do {
         path_ = in / fmt::format(".isowave-slabs-{}-{}", ::getpid(), next++);
     } while (!fs::create_directory(path_, error) && !error);
@@ -88,7 +88,7 @@ struct SlabbedField::Reached {
     wavelets::Halved halved;
     wavelets::FieldExtent extent;
     std::vector<std::int64_t> details;  // by step
-    std::vector<int> slabs, axes;       // that each step was made in
+    std::vector<int> slabs;             // that each step was made in
     BSplineField field;
 };
 
@@ -121,16 +121,13 @@ SlabbedField::Reached SlabbedField::descendInSlabs(
                 extents[s].add(told.extents[s]);
                 details[s] += told.details[s];
             }
-        for (int row = 0; inColumns && row < grid.rows.count(); ++row)
-            for (int column = 0; column < grid.columns.count(); ++column)
-                store_.forgetField(phase.first, row, column);
+        if (hidden_ && inColumns) forget(phase.first, grid);
         for (std::size_t s = 0; s < steps; ++s) {
             const int axis = options.order.axisAfter(reached.halved.step);
             reached.halved = wavelets::halvedAlong(axis, reached.halved, reached.extent, extents[s]);
             reached.extent = extents[s];
             reached.details.push_back(details[s]);
             reached.slabs.push_back(phase.slabs());
-            reached.axes.push_back(axis);
         }
         grid = phase.after;
         inColumns = true;
@@ -138,6 +135,12 @@ SlabbedField::Reached SlabbedField::descendInSlabs(
     }
     reached.field = whole();
     return reached;
+}
+
+// Of a folder that others see nothing goes: a job that begins again goes on from any phase, be it of steps that end elsewhere.
+void SlabbedField::forget(int step, const SlabGrid& grid) const {
+    for (int row = 0; row < grid.rows.count(); ++row)
+        for (int column = 0; column < grid.columns.count(); ++column) store_.forgetField(step, row, column);
 }
 
 wavelets::Descent SlabbedField::descend(const wavelets::AnalyseOptions& options,
@@ -169,8 +172,7 @@ wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& 
             shapes.push_back(store_.shape(step, slab));
             details.push_back(store_.details(step, slab));
         }
-        steps.push_back(
-            {reached.axes[static_cast<std::size_t>(step)], joinedShape(shapes), joinedDetails(details)});
+        steps.push_back({order.axisAfter(step), joinedShape(shapes), joinedDetails(details)});
     }
     steps.insert(steps.end(), rest.steps.begin(), rest.steps.end());
     rest.steps = std::move(steps);

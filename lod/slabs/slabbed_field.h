@@ -34,7 +34,7 @@ struct SlabWork {
         folder;  // of in-turn work the folder that a hidden one is made in; else the one that all workers see
     SlabMap map = {};              // none: one slab after the other
     std::vector<float> mask = {};  // values that the stream takes as inside
-    std::string image = {};        // whatever changes when the image does
+    std::string image = {};        // whatever changes when the image or the way to read it does
 };
 
 class SlabbedField {
@@ -52,9 +52,8 @@ class SlabbedField {
     const wavelets::FieldExtent& extent() const { return extent_; }
     int slabs() const { return plan_.cuts.count(); }
 
-    // Step 0, joined; and a slab of it.
+    // Step 0, joined.
     BSplineField whole() const;
-    BSplineField part(int slab) const;
 
     // Comes down in slabs, then, when little is left, with the whole. onStep: is called for the steps that are asked for, and for all
     // those that the whole makes.
@@ -65,7 +64,9 @@ class SlabbedField {
     wavelets::Pyramid analyse(const StepOrder& order, const Progress& progress) const;
 
   private:
+    BSplineField part(int slab) const;
     struct Reached;  // how far slabs came down
+    void forget(int step, const SlabGrid& grid) const;
     Reached descendInSlabs(const wavelets::AnalyseOptions& options,
                            const std::function<bool(int)>& isAskedFor,
                            const std::function<void(int, const BSplineField&)>& onStep, bool keep,

@@ -19,6 +19,7 @@ import os
 import shutil
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar, Union
 
@@ -107,7 +108,10 @@ def _image_of(source: Any, folder: Path, axes: str, spacing: Optional[Sequence[f
         raise UsageError(f"source: expected a path or a dask array of three dimensions, found {type(source).__name__}")
     if axes not in ("xyz", "zyx"):
         raise UsageError(f"axes: {axes!r} is neither 'xyz' nor 'zyx'")
-    store = folder / "volume.ome.zarr"
+    from dask.base import tokenize
+
+    token = tokenize(source, axes, spacing, origin)  # type: ignore[no-untyped-call]
+    store = folder / f"volume-{token}.ome.zarr"  # of this array, should another one lie there
     if not (store / ".zattrs").exists():
         shutil.rmtree(store, ignore_errors=True)
         (source.T if axes == "xyz" else source).to_zarr(str(store / "0"), component=None)
@@ -129,6 +133,8 @@ def _job(make: Callable[..., _Made], source: Any, client: Any, out: Union[str, P
     try:
         result = make(cluster, **arguments)
     except BaseException:
+        with suppress(OSError):
+            folder.rmdir()  # where nothing was begun
         if cluster.failure is not None:
             raise cluster.failure from None
         raise

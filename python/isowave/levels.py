@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from typing import Any, NamedTuple, Optional, Sequence
 
@@ -10,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._details import check_dropping, checked_depth, depth_of, report_of
 from ._meshes import PathLike, is_path
 from ._watch import ProgressLike, Watch
 from .errors import UsageError
@@ -58,30 +58,13 @@ def _curves(curves: Any) -> list[tuple[npt.NDArray[np.float64], bool]]:
     return [_curve(curve, number) for number, curve in enumerate([curves] if one else curves)]
 
 
-def _depth(depth: int, most: int) -> int:
-    if not 0 <= depth <= most:
-        raise UsageError(f"--depth: '{depth}' is not between 0 and {most}")
-    return depth
-
-
-def _check_dropping(threshold: Optional[float], keep: Optional[int]) -> None:
-    if threshold is not None and keep is not None:
-        raise UsageError("--threshold and --keep exclude each other; give one of them")
-    if threshold is not None and not 0 < threshold < float("inf"):
-        raise UsageError(f"--threshold: '{threshold}' is not above 0")
-    if keep is not None and keep < 0:
-        raise UsageError(f"--keep: '{keep}' is below 0")
-
-
 class CurveDetails:
     """Curves taken apart: the coarsest level of each, and the details that lead back. What ``curve-levels --details`` writes."""
 
     def __init__(self, native: _native.CurveDetails, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave curve-levels --json`` writes; None for one that was loaded.
-        self.report: Optional[dict[str, Any]] = None
-        if native.report:
-            self.report = {**json.loads(native.report), "remarks": [*remarks, *native.remarks]}
+        self.report = report_of(native.report, [*remarks, *native.remarks])
 
     @classmethod
     def load(cls, path: PathLike) -> CurveDetails:
@@ -125,11 +108,11 @@ class CurveDetails:
 
         Raises UsageError for a depth beyond len(self); InputError for edited curves of another size.
         """
-        _check_dropping(threshold, keep)
+        check_dropping(threshold, keep)
         if depth is not None and depth > len(self):
             raise UsageError(f"--depth: there are {len(self)} levels")
         places = None if moved is None else _curves(moved)
-        wanted = -1 if depth is None else _depth(depth, _MOST_CURVES)
+        wanted = depth_of(depth, _MOST_CURVES, -1)
         curves, _ = self._native.rebuild(wanted, places, frames, threshold, keep, limit, Watch(progress))
         return [Curve(*parts) for parts in curves]
 
@@ -175,11 +158,11 @@ def curve_levels(
         raise UsageError("--width: belongs to --mask; write --scheme cubic-7 otherwise")
     if resample is not None and resample < 2:
         raise UsageError(f"--points: '{resample}' is below 2")
-    _check_dropping(threshold, keep)
+    check_dropping(threshold, keep)
     watch = Watch(progress)
     path = os.fspath(curves) if is_path(curves) else None
     parts = [] if path is not None else _curves(curves)
-    native = _native.curve_levels(parts, path, scheme or "dlg-refined", mask or "", width or 0, _depth(depth, _MOST_CURVES),
+    native = _native.curve_levels(parts, path, scheme or "dlg-refined", mask or "", width or 0, checked_depth(depth, _MOST_CURVES),
                                   resample, threshold, keep, watch)  # fmt: skip
     return CurveDetails(native, watch.remarks)
 
@@ -197,9 +180,7 @@ class ReliefDetails:
     def __init__(self, native: _native.ReliefDetails, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave relief --json`` writes; None for one that was loaded.
-        self.report: Optional[dict[str, Any]] = None
-        if native.report:
-            self.report = {**json.loads(native.report), "remarks": list(remarks)}
+        self.report = report_of(native.report, remarks)
 
     @classmethod
     def load(cls, path: PathLike) -> ReliefDetails:
@@ -240,11 +221,11 @@ class ReliefDetails:
 
         Raises UsageError for a depth beyond len(self); InputError for edited heights of another size.
         """
-        _check_dropping(threshold, keep)
+        check_dropping(threshold, keep)
         if depth is not None and depth > len(self):
             raise UsageError(f"--depth: there are {len(self)} levels")
         places = None if edited is None else _heights(edited, "edited")
-        wanted = -1 if depth is None else _depth(depth, _MOST_RELIEF)
+        wanted = depth_of(depth, _MOST_RELIEF, -1)
         return self._native.rebuild(wanted, places, threshold, keep, limit, Watch(progress))[0]
 
     def __repr__(self) -> str:
@@ -274,4 +255,4 @@ def relief(
     watch = Watch(progress)
     path = os.fspath(heights) if is_path(heights) else None
     values = None if path is not None else _heights(heights, "heights")
-    return ReliefDetails(_native.relief(values, path, scheme, _depth(depth, _MOST_RELIEF), watch), watch.remarks)
+    return ReliefDetails(_native.relief(values, path, scheme, checked_depth(depth, _MOST_RELIEF), watch), watch.remarks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, Callable, Optional, Union, overload
 
 import numpy as np
@@ -40,10 +41,7 @@ class InSlabs:
         raise NotImplementedError
 
     def open(self, options: Given, watch: Watch) -> _native.Solid:
-        def run(tasks: list[str], report: Callable[[float], bool]) -> Optional[list[str]]:
-            return self.run(options, tasks, report)
-
-        return _native.open_in_slabs(self.path, options, self.slabs, self.folder, run, watch)
+        return _native.open_in_slabs(self.path, options, self.slabs, self.folder, partial(self.run, options), watch)
 
 
 def _open(source: Any, faces: Any, geometry: Geometry, options: Given, watch: Watch, finest: int = 0) -> _native.Solid:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from fractions import Fraction
 from typing import Any, NamedTuple, Optional, Sequence, Union
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._details import check_dropping, depth_of, report_of
 from ._meshes import Faces, PathLike, faces_of, is_path, polygons_of
 from ._watch import ProgressLike, Watch
 from .errors import UsageError
@@ -104,14 +104,6 @@ def _polygons(mesh: Any, faces: Any, creases: Creases, watch: Watch) -> _native.
     return _native.take_polygons(points, corners, sizes, list(creases))
 
 
-def _depth(depth: Optional[int], fallback: int) -> int:
-    if depth is None:
-        return fallback
-    if not 0 <= depth <= _MOST:
-        raise UsageError(f"--depth: '{depth}' is not between 0 and {_MOST}")
-    return depth
-
-
 def _mesh(parts: tuple[Any, Any, Any]) -> PolygonMesh:
     points, corners, sizes = parts
     return PolygonMesh(points, faces_of(corners, sizes))
@@ -144,7 +136,7 @@ def subdivide(
     array([0.25, 0.25, 0.25])
     """
     watch = Watch(progress)
-    return _mesh(_native.subdivide(_polygons(mesh, faces, creases, watch), scheme, _depth(depth, 1), limit, watch))
+    return _mesh(_native.subdivide(_polygons(mesh, faces, creases, watch), scheme, depth_of(depth, _MOST, 1), limit, watch))
 
 
 class Hierarchy:
@@ -153,9 +145,7 @@ class Hierarchy:
     def __init__(self, native: _native.Hierarchy, remarks: Sequence[str] = ()) -> None:
         self._native = native
         #: What ``isowave reverse --json`` writes; None for one that was loaded.
-        self.report: Optional[dict[str, Any]] = None
-        if native.report:
-            self.report = {**json.loads(native.report), "remarks": list(remarks)}
+        self.report = report_of(native.report, remarks)
 
     @classmethod
     def load(cls, path: PathLike) -> Hierarchy:
@@ -167,12 +157,7 @@ class Hierarchy:
 
         threshold: without details shorter than this. keep: with only that many of the longest. The file is smaller then.
         """
-        if threshold is not None and keep is not None:
-            raise UsageError("--threshold and --keep exclude each other; give one of them")
-        if threshold is not None and not 0 < threshold < float("inf"):
-            raise UsageError(f"--threshold: '{threshold}' is not above 0")
-        if keep is not None and keep < 0:
-            raise UsageError(f"--keep: '{keep}' is below 0")
+        check_dropping(threshold, keep)
         self._native.save(os.fspath(path), threshold, keep)
 
     @property
@@ -225,7 +210,7 @@ class Hierarchy:
         if threshold is not None and keep is not None:
             raise UsageError("--threshold and --keep exclude each other; give one of them")
         watch = Watch(progress)
-        return _mesh(self._native.rebuild(_depth(depth, -1), points, frames, threshold, keep, limit, watch)[0])
+        return _mesh(self._native.rebuild(depth_of(depth, _MOST, -1), points, frames, threshold, keep, limit, watch)[0])
 
     def __repr__(self) -> str:
         return f"<isowave.Hierarchy: {self.scheme}, {len(self)} subdivisions above {len(self.base.points):,} vertices>"
@@ -262,4 +247,4 @@ def reverse(
         raise UsageError(f"--crease: '{crease}' is not between 0 and 180")
     if crease is not None and scheme != "catmull-clark":
         raise UsageError(f"--crease: belongs to --scheme catmull-clark; {scheme} has no creases")
-    return Hierarchy(_native.reverse(polygons, scheme, variant, _depth(depth, -1), crease, watch), watch.remarks)
+    return Hierarchy(_native.reverse(polygons, scheme, variant, depth_of(depth, _MOST, -1), crease, watch), watch.remarks)

@@ -162,6 +162,41 @@ TEST_F(Slabs, TheirTasksMayRunInAnyOrderAndTwice) {
     EXPECT_EQ(bytesOf(folder / "again.vdb"), bytesOf(folder / "whole.vdb"));
 }
 
+// Jobs that end half way leave files of the same names.
+TEST_F(Slabs, OfAnotherJobAreNotTakenForOnesOwn) {
+    const fs::path image = folder / "gyroid.nrrd";
+    const Image& values = largeGyroid();
+    tools_test::writeNrrd(image, {64, 56, 90},
+                          std::vector<float>(values.values.begin(), values.values.end()));
+    fs::create_directory(folder / "slabs");
+    const auto job = [&](double iso, int mostMaps) {
+        SolidOptions options{.iso = iso, .slabs = 4, .slabFolder = folder / "slabs"};
+        const SolidOptions reading = options;
+        options.slabMap = [=, maps = 0](const std::vector<std::string>& tasks,
+                                        const Progress& progress) mutable {
+            if (maps++ == mostMaps) throw Cancelled();
+            std::vector<std::string> told;
+            for (const std::string& task : tasks) told.push_back(runSlabTask(image, reading, task, progress));
+            return told;
+        };
+        return options;
+    };
+    constexpr int kAll = 1000;
+    EXPECT_THROW(analyse(open(image, job(0, 2))), Cancelled);
+    EXPECT_THROW(analyse(open(image, job(60, 2))), Cancelled);
+    analyse(open(image, job(0, kAll))).save(folder / "parts.vdb");
+    analyse(open(image, {.iso = 0})).save(folder / "whole.vdb");
+    EXPECT_EQ(bytesOf(folder / "parts.vdb"), bytesOf(folder / "whole.vdb"));
+    // Steps that end elsewhere, of the same fit.
+    const Ladder parts = makeLadder(open(image, job(0, kAll)),
+                                    {.levels = StepRange{1, 1}, .hold = Holding::none}),
+                 whole =
+                     makeLadder(open(image, {.iso = 0}), {.levels = StepRange{1, 1}, .hold = Holding::none});
+    EXPECT_EQ(parts.levels[0].mesh.points, whole.levels[0].mesh.points);
+    analyse(open(image, job(0, kAll))).save(folder / "again.vdb");
+    EXPECT_EQ(bytesOf(folder / "again.vdb"), bytesOf(folder / "whole.vdb"));
+}
+
 std::string refusal(const std::function<void()>& work) {
     try {
         work();

@@ -81,6 +81,23 @@ def test_dask_arrays_lie_where_arguments_say(client, tmp_path, axes):
     assert (ladder[0].triangles == direct[0].triangles).all()
 
 
+def test_another_array_in_the_same_place_is_not_taken_for_the_first(client, tmp_path):
+    first, second = gyroid(), gyroid()[::-1].copy()
+    job = dict(client=client, out=tmp_path, slabs=3, spacing=(1, 1, 1))
+
+    class Enough(Exception):
+        pass
+
+    def stop(share, stage):
+        raise Enough
+
+    with pytest.raises(Enough):
+        isowave.distributed.analyse(dask.array.from_array(first, chunks=48), iso=0, progress=stop, **job)
+    ladder = isowave.distributed.lod(dask.array.from_array(second, chunks=48), iso=0, levels=2, hold="none", **job)
+    direct = isowave.lod(second, iso=0, levels=2, hold="none", spacing=(1, 1, 1))
+    assert (ladder[0].points == direct[0].points).all()
+
+
 def test_a_worker_that_is_killed_changes_nothing(image, whole, tmp_path):
     out = tmp_path / "out"
     for phase in ("fit_", "step_0_", "field_"):  # what lies there when it is killed

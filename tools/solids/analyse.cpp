@@ -43,6 +43,7 @@ Analyse::Analyse()
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
+    declareSlabs(options_, solid_);
     declareTalk();
 }
 

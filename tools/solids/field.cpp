@@ -33,6 +33,7 @@ class FieldCommand : public Command {
         declareSolid(options_, solid_);
         declareThreads();
         declareMaxMemory(options_, solid_);
+        declareSlabs(options_, solid_);
         declareTalk();
     }
     bool needsOutput() const override { return true; }

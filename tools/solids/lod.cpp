@@ -275,6 +275,7 @@ Lod::Lod()
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);
+    declareSlabs(options_, solid_);
     declareTalk();
 }
 

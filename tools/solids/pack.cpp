@@ -44,6 +44,7 @@ class Pack : public Command {
         declareSolid(options_, solid_);
         declareThreads();
         declareMaxMemory(options_, solid_);
+        declareSlabs(options_, solid_);
         declareTalk();
     }
     bool needsOutput() const override { return true; }

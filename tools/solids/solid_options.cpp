@@ -171,6 +171,9 @@ void declareMaxMemory(OptionList& options, SolidOptions& solid) {
         "--max-memory", "GB", "70 % of this computer's",
         "refuse images, meshes and level sets that would take more, as far as can be told beforehand",
         [&](const std::string& v) { solid.maxMemory = positive(v) * kBytesPerGigabyte; });
+}
+
+void declareSlabs(OptionList& options, SolidOptions& solid) {
     options.value("--slabs", "N", "1",
                   "images, fit by distance or binary: read, fit and halve N slabs of slices one after the "
                   "other, which takes less memory; the result is the same",

@@ -12,9 +12,10 @@ namespace isowave::tools {
 void declareSolid(OptionList& options, SolidOptions& solid);
 // Of these, --size ... --series: how an image is read.
 void declareImage(OptionList& options, SolidOptions& solid);
+void declareMaxMemory(OptionList& options, SolidOptions& solid);
+void declareSlabs(OptionList& options, SolidOptions& solid);
 // The same, with slabs in a hidden folder beside what is made.
 SolidOptions withSlabsBeside(const SolidOptions& solid, const std::filesystem::path& output);
-void declareMaxMemory(OptionList& options, SolidOptions& solid);
 
 // --refine ... --deviation: how the mesh of a level is made. features: --features among them.
 void declareMesh(OptionList& options, LevelOptions& level, bool features);

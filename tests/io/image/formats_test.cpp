@@ -206,6 +206,14 @@ TEST_F(ImageFormat, ABmpOrJpegBesideOtherSlicesIsLeftAlone) {
     expectPattern<unsigned char>(readImage(folder));
 }
 
+TEST_F(ImageFormat, SlicesMayLieInAFolderBelow) {
+    fs::create_directory(folder / "below");
+    writeSlices<unsigned char>(folder / "below", ".png", {"a", "b"});
+    put(folder / "notes.txt", "seen by nobody");
+    EXPECT_EQ(readImage(folder).size, (Size{7, 5, 2}));
+    expectPattern<unsigned char>(readImage(folder));
+}
+
 TEST_F(ImageFormat, SlicesSayThatTheirHeightIsAssumed) {
     writeSlices<unsigned char>(folder, ".png", {"a", "b"});
     EXPECT_THAT(readImage(folder).warnings,
