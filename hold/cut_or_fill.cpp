@@ -36,7 +36,8 @@ const char* nameOf(What what) {
 
 // An option that was tried and does what it should.
 struct Choice {
-    TopologyEdit edit;
+    TopologyEdit edit;  // without its volume
+    EditPlan plan;
     LocalEdit change;
     OptionKey key;
 };
@@ -174,9 +175,7 @@ class Limiter {
         for (const EditManner& manner : kManners) {
             auto change = trial.attempt(manner, option.euler);
             if (!change) continue;
-            TopologyEdit edit = option.edit;
-            edit.volume = change->volume;
-            return Choice{edit, std::move(*change), keyOf(option)};
+            return Choice{option.edit, option.plan, std::move(*change), keyOf(option)};
         }
         return {};
     }
@@ -216,12 +215,10 @@ class Limiter {
         for (const Choice& choice : batch) apply(choice.change, changed);
         const SolidCounts now = count(changed);
         if (isAsWanted(now, batch)) {
+            for (const Choice& choice : batch) result_.edits.push_back(made(choice));
             field_ = changed;
             result_.after = now;
-            for (const Choice& choice : batch) {
-                result_.edits.push_back(choice.edit);
-                forgetAround(choice.change.box);
-            }
+            for (const Choice& choice : batch) forgetAround(choice.change.box);
         } else if (batch.size() == 1) {
             useless_.insert(batch.front().key);
         } else {
@@ -229,6 +226,11 @@ class Limiter {
             take({batch.begin(), middle});
             take({middle, batch.end()});
         }
+    }
+    TopologyEdit made(const Choice& choice) const {
+        TopologyEdit edit = choice.edit;
+        edit.volume = EditTrial(field_, refine_, choice.plan).volumeGained(choice.change);
+        return edit;
     }
     bool isAsWanted(const SolidCounts& now, const std::vector<Choice>& batch) const {
         const auto less = static_cast<std::int64_t>(batch.size());

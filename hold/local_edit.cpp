@@ -145,15 +145,18 @@ std::optional<LocalEdit> EditTrial::attempt(const EditManner& manner, std::optio
         if (*known != before_->tree().getValue(known.getCoord()))
             edit.controlPoints.emplace_back(known.getCoord(), *known);
     if (edit.controlPoints.empty()) return {};
-    const double after = volumeOf(local_, refine_);
-    if (!volumeBefore_) {
-        BSplineField unchanged = local_;
-        unchanged.controlPoints = before_;
-        volumeBefore_ = volumeOf(unchanged, refine_);
-    }
-    edit.volume = after - *volumeBefore_;
     edit.moved = moved();
     return edit;
+}
+
+double EditTrial::volumeGained(const LocalEdit& edit) const {
+    BSplineField field = local_;
+    field.controlPoints = before_;
+    const double before = volumeOf(field, refine_);
+    field.controlPoints = before_->deepCopy();
+    auto values = field.controlPoints->getAccessor();
+    for (const auto& [at, value] : edit.controlPoints) values.setValueOnly(at, value);
+    return volumeOf(field, refine_) - before;
 }
 
 // Of a handle that goes: a speck or a bubble that comes or goes changes it, too, by that of a ball. Where a part is joined or a cavity

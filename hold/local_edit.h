@@ -32,8 +32,7 @@ struct EditManner {
 struct LocalEdit {
     openvdb::CoordBBox box;  // of the control points that may change, index space
     std::vector<std::pair<openvdb::Coord, float>> controlPoints;  // new values, where they differ
-    double volume = 0;                                            // world units^3 that the solid gains
-    double moved = 0;  // and that go to the other side, by lattice points: gains and losses do not cancel
+    double moved = 0;  // world units^3 that go to the other side, by lattice points: gains and losses do not cancel
 };
 
 // One plan on its surroundings, tried in several manners.
@@ -44,9 +43,12 @@ class EditTrial {
 
     // The least change (volume/row_ascent.h) of the control points within reach of the plan's points; nothing where no change is needed, or
     // where the Euler number of the mesh of polygonize(field, refine) does not change by `euler`; where that is positive, less that of
-    // the specks and bubbles around. Volume and Euler number are exact:
-    // the surroundings before and after are cut out in the same way.
+    // the specks and bubbles around. The Euler number is exact: the surroundings before and after are cut out in the same way.
     std::optional<LocalEdit> attempt(const EditManner& manner, std::optional<int> euler = {});
+
+    // World units^3 that the whole mesh gains by an edit that was made for this plan and field. It takes several times as long as
+    // an attempt: for edits that are made.
+    double volumeGained(const LocalEdit& edit) const;
 
   private:
     void collectPlaces();
@@ -76,7 +78,6 @@ class EditTrial {
     BSplineField local_;
     openvdb::FloatGrid::Ptr before_;
     LatticePatch patchBefore_, patchAfter_;
-    std::optional<double> volumeBefore_;
     openvdb::CoordBBox planned_;       // of marks_
     std::vector<std::uint8_t> marks_;  // signs to come, and which of them are the plan's
     double step_ = 0, tolerance_ = 0;

