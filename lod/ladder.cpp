@@ -113,6 +113,7 @@ class Maker {
         counts_ = countsOf(report.topology);
         const StageClock::Scope scope(clock_, "measure");
         if (vanished_) return;
+        mesher_.tellVolume(report);
         putDistances(report, made.mesh);
         putRegionDistances(report, made);
         if (report.step == 0) putInputDistance(report, made.mesh);
@@ -311,6 +312,7 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
     if (made.mesh.triangles.empty())
         throw InputError(name,
                          fmt::format("the whole solid has vanished at step {}; take a smaller one", step));
+    mesher.tellVolume(made.report);
     lod::putField(made.report, field);
     if (options.deviation) lod::putDeviation(made.report, made, progress);
     made.report.seconds = clock.secondsSoFar() - begin;
