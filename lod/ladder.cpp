@@ -114,6 +114,7 @@ class Maker {
         counts_ = countsOf(report.topology);
         const StageClock::Scope scope(clock_, "measure");
         if (vanished_) return;
+        mesher_.tellVolume(report);
         putDistances(report, made.mesh);
         putRegionDistances(report, made);
         if (report.step == 0) putInputDistance(report, made.mesh);
@@ -328,6 +329,7 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
         mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));
     lod::LevelMesh made = mesher.make(step, field);
     if (made.mesh.triangles.empty()) throw InputError(name, vanishedText(solid, step, progress));
+    mesher.tellVolume(made.report);
     lod::putField(made.report, field);
     if (options.deviation) lod::putDeviation(made.report, made, progress);
     made.report.seconds = clock.secondsSoFar() - begin;

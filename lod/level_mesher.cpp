@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "base/number_text.h"
 #include "hold/hold.h"
@@ -462,6 +463,17 @@ void LevelMesher::tellDifference(const LevelReport& report) const {
                     "would hold it better",
                     differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
                     std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
+}
+
+// The level before has half the voxel, and so has the same level of a solid with voxels half as large: docs/hold.md has TR12J at both.
+void LevelMesher::tellVolume(const LevelReport& report) {
+    if (report.step == 0 || report.vanished() || options_.preserveVolume || !report.volumeError) return;
+    if (std::abs(*report.volumeError) <= kVolumeTold || std::exchange(toldOfVolume_, true)) return;
+    progress_.say(fmt::format(
+        "{}: {:+.2g} % of the volume of {}, more than {:.0f} %; the level before it, or voxels half as "
+        "large, would be nearer",
+        report.level ? fmt::format("level {}", *report.level) : fmt::format("step {}", report.step),
+        100 * *report.volumeError, truth_.volume ? "the input" : "level 0", 100 * kVolumeTold));
 }
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {

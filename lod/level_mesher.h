@@ -32,6 +32,9 @@ struct LevelMesh {
     std::vector<LocalLevels::Place> places = {};  // of triangles; empty without regions
 };
 
+// Of the volume: a coarser level that is farther from it is told.
+constexpr double kVolumeTold = 0.1;
+
 // Whether a level may not have more parts, handles and cavities than the one before it, which must be looked at then.
 inline bool levelsLimit(const LevelOptions& options, bool openBorder) {
     return options.hold == Holding::local && !openBorder;
@@ -64,6 +67,10 @@ class LevelMesher {
     // what level 0 has. Nothing where nothing rises, at refine 4 and for meshes cut off at an open border.
     // level: as make() gave it; its mesh is not needed any more.
     std::optional<SamplingReport> sampling(const LevelMesh& level, const SolidCounts& before) const;
+
+    // A remark for the first level that has gained or lost more than kVolumeTold of the volume: level 0 has its own.
+    // report: as make() gave it. Nothing with preserveVolume, which says by itself what it could not keep.
+    void tellVolume(const LevelReport& report);
 
   private:
     struct Level0;
@@ -127,7 +134,7 @@ class LevelMesher {
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;
     std::optional<FineRegions> regions_;
-    bool toldOfRegions_ = false;
+    bool toldOfRegions_ = false, toldOfVolume_ = false;
 };
 
 }  // namespace isowave::lod

@@ -1,4 +1,5 @@
 // What a level's mesh is made like, and what is told about it: the iso-value, specks, topology, features, sampling.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -85,6 +86,27 @@ TEST(Levels, SayWhereTheVolumeIsOutOfReach) {
     remarks.text.clear();
     levelsOf(plateSolid(), {.levels = StepRange{0, 2}, .preserveVolume = true}, remarks.progress());
     EXPECT_EQ(remarks.text.find("out of reach"), std::string::npos) << remarks.text;
+}
+
+// One remark, by the first of those that are more than 10 % off; none by a ladder that ends before it.
+TEST(Levels, SayWhichIsTheFirstFarFromTheVolume) {
+    const auto isFar = [](const LevelReport& l) {
+        return l.step != 0 && std::abs(l.volumeError.value_or(0)) > 0.1;
+    };
+    Remarks remarks;
+    const auto levels =
+        levelsOf(wallSolid(), {.levels = StepRange{0, 3}, .hold = Holding::none}, remarks.progress());
+    const auto first = std::find_if(levels.begin(), levels.end(), isFar);
+    ASSERT_NE(first, levels.end()) << "the wall is torn or gone";
+    ASSERT_GT(*first->level, 1);
+    const auto told = remarks.text.find("% of the volume of level 0, more than 10 %");
+    EXPECT_THAT(remarks.text, HasSubstr("level " + std::to_string(*first->level) + ": "));
+    ASSERT_NE(told, std::string::npos) << remarks.text;
+    EXPECT_EQ(remarks.text.find("more than 10 %", told + 50), std::string::npos) << remarks.text;
+    remarks.text.clear();
+    levelsOf(wallSolid(), {.levels = StepRange{0, *first->level - 1}, .hold = Holding::none},
+             remarks.progress());
+    EXPECT_EQ(remarks.text.find("more than 10 %"), std::string::npos) << remarks.text;
 }
 
 TEST(Levels, KeepThinWallsWhenAsked) {
