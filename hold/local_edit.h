@@ -32,7 +32,8 @@ struct EditManner {
 struct LocalEdit {
     openvdb::CoordBBox box;  // of the control points that may change, index space
     std::vector<std::pair<openvdb::Coord, float>> controlPoints;  // new values, where they differ
-    double moved = 0;  // world units^3 that go to the other side, by lattice points: gains and losses do not cancel
+    double moved =
+        0;  // world units^3 that go to the other side, by lattice points: gains and losses do not cancel
 };
 
 // One plan on its surroundings, tried in several manners.

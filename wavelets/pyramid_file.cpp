@@ -111,10 +111,10 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid, con
         grids.push_back(step.shape ? named<Shape>(step.shape, shapeName(s))
                                    : madeWhenWritten<Shape>(
                                          shapeName(s), [&missing, number] { return missing.shape(number); }));
-        grids.push_back(step.details
-                            ? named<DetailGrid>(step.details, detailsName(s))
-                            : madeWhenWritten<DetailGrid>(
-                                  detailsName(s), [&missing, number] { return missing.details(number); }));
+        grids.push_back(step.details ? named<DetailGrid>(step.details, detailsName(s))
+                                     : madeWhenWritten<DetailGrid>(detailsName(s), [&missing, number] {
+                                           return missing.details(number);
+                                       }));
     }
     if (pyramid.exact) grids.push_back(named<openvdb::FloatGrid>(pyramid.exact, kExact));
     writeVdb(path, grids, meta);

@@ -111,7 +111,8 @@ TEST(PyramidFile, StepsFromElsewhereAreTheSameBytes) {
     const Pyramid whole = small();
     writePyramid(folder / "a.vdb", whole);
     Pyramid lacking = whole;
-    for (std::size_t step : {0, 1, 4}) lacking.steps[step].shape = nullptr, lacking.steps[step].details = nullptr;
+    for (std::size_t step : {0, 1, 4})
+        lacking.steps[step].shape = nullptr, lacking.steps[step].details = nullptr;
     std::vector<std::string> asked;
     std::weak_ptr<void> last;
     const auto copied = [&](const char* what, int step, const auto& grid) {
@@ -123,17 +124,21 @@ TEST(PyramidFile, StepsFromElsewhereAreTheSameBytes) {
     };
     const StepSource source{
         [&](int step) { return copied("shape", step, whole.steps[static_cast<std::size_t>(step)].shape); },
-        [&](int step) { return copied("details", step, whole.steps[static_cast<std::size_t>(step)].details); }};
+        [&](int step) {
+            return copied("details", step, whole.steps[static_cast<std::size_t>(step)].details);
+        }};
     writePyramid(folder / "b.vdb", lacking, source);
     EXPECT_EQ(bytesOf(folder / "a.vdb"), bytesOf(folder / "b.vdb"));
-    EXPECT_THAT(asked, testing::ElementsAre("shape0", "details0", "shape1", "details1", "shape4", "details4"));
+    EXPECT_THAT(asked,
+                testing::ElementsAre("shape0", "details0", "shape1", "details1", "shape4", "details4"));
 }
 
 TEST(PyramidFile, StepsThatCannotBeHadLeaveNothing) {
     const test::TempFolder folder("gone");
     Pyramid lacking = small();
     lacking.steps[1].details = nullptr;
-    const StepSource source{{}, [](int) -> DetailGrid::Ptr { throw InputError("step_1_0.vdb", "is missing"); }};
+    const StepSource source{{},
+                            [](int) -> DetailGrid::Ptr { throw InputError("step_1_0.vdb", "is missing"); }};
     EXPECT_THROW(writePyramid(folder / "b.vdb", lacking, source), InputError);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

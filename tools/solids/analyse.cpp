@@ -72,10 +72,10 @@ std::string Analyse::write(const Part& part, const Progress& progress) const {
     const PyramidCounts counts =
         analyseTo(part.output, open(part.input, withSlabsBeside(solid_, part.output), progress), progress);
     out.commit();
-    return fmt::format("{} steps, {} coefficients stored for {} control points (x{:.3f})", counts.steps,
-                       grouped(counts.coefficientsStored), grouped(counts.controlPoints),
-                       static_cast<double>(counts.coefficientsStored) /
-                           static_cast<double>(counts.controlPoints));
+    return fmt::format(
+        "{} steps, {} coefficients stored for {} control points (x{:.3f})", counts.steps,
+        grouped(counts.coefficientsStored), grouped(counts.controlPoints),
+        static_cast<double>(counts.coefficientsStored) / static_cast<double>(counts.controlPoints));
 }
 
 }  // namespace

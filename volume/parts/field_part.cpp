@@ -130,7 +130,8 @@ BSplineField joinedField(const std::vector<BSplineField>& parts) {
     return field;
 }
 
-openvdb::FloatGrid::Ptr joinedDetails(int parts, const std::function<openvdb::FloatGrid::Ptr(int part)>& get) {
+openvdb::FloatGrid::Ptr joinedDetails(int parts,
+                                      const std::function<openvdb::FloatGrid::Ptr(int part)>& get) {
     assert(parts > 0);
     auto joined = openvdb::FloatGrid::create(0.0f);
     for (int i = 0; i < parts; ++i) {
