@@ -41,11 +41,19 @@ std::int64_t Pyramid::controlPoints() const { return lod::finestControlPoints(st
 std::int64_t Pyramid::memoryBytes() const { return lod::bytesOf(state_->pyramid); }
 const std::map<std::string, std::string>& Pyramid::source() const { return state_->pyramid.source; }
 
-Pyramid analyse(Solid solid, const Progress& progress) {
-    if (solid.isPyramid()) throw UsageError(solid.input().path + " is a pyramid already");
+namespace {
+
+std::map<std::string, std::string> sourceOf(const Solid& solid) {
     const InputReport& input = solid.input();
-    auto source = input.kind == InputReport::Kind::pyramid ? input.source
-                                                           : lod::sourceOf(input, solid.fit());  // packed
+    if (solid.isPyramid()) throw UsageError(input.path + " is a pyramid already");
+    return input.kind == InputReport::Kind::pyramid ? input.source  // packed
+                                                    : lod::sourceOf(input, solid.fit());
+}
+
+}  // namespace
+
+Pyramid analyse(Solid solid, const Progress& progress) {
+    auto source = sourceOf(solid);
     const StepOrder order = solid.order();
     const std::shared_ptr<const lod::SlabbedField> slabs = SolidAccess::of(solid).slabs;
     wavelets::Pyramid pyramid =
@@ -53,6 +61,15 @@ Pyramid analyse(Solid solid, const Progress& progress) {
               : wavelets::analyse(SolidAccess::takeField(std::move(solid)), {.order = order}, progress);
     pyramid.source = std::move(source);
     return PyramidAccess::make(std::move(pyramid));
+}
+
+PyramidCounts analyseTo(const std::filesystem::path& path, Solid solid, const Progress& progress) {
+    const std::shared_ptr<const lod::SlabbedField> slabs = SolidAccess::of(solid).slabs;
+    if (slabs && !compress::isPackedPath(path))
+        return slabs->analyseTo(path, solid.order(), sourceOf(solid), progress);
+    const Pyramid pyramid = analyse(std::move(solid), progress);
+    pyramid.save(path);
+    return {pyramid.stepCount(), pyramid.controlPoints(), pyramid.coefficientsStored()};
 }
 
 Solid solidOf(const Pyramid& pyramid) {

@@ -5,6 +5,7 @@
 
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace isowave {
 namespace {
@@ -47,6 +48,36 @@ void writeLeaves(const Tree& tree, std::ostream& out, bool toHalf) {
                                tbb::make_filter<std::string, void>(filter_mode::serial_in_order, write));
 }
 
+// Marks those that write in parallel by themselves.
+struct MadeWhenWritten {
+    virtual ~MadeWhenWritten() = default;
+};
+
+// Archive::write() asks a grid, in this order, for a copy (to which it adds statistics, and whose metadata it writes), for its
+// transform, its topology, its buffers.
+template <class Grid>
+class GridToBeMade : public Grid, public MadeWhenWritten {
+  public:
+    GridToBeMade(const std::string& name, std::function<typename Grid::Ptr()> make) : make_(std::move(make)) {
+        this->setName(name);
+    }
+    openvdb::GridBase::ConstPtr copyGrid() const override {
+        made_ = make_();
+        made_->setName(this->getName());
+        const_cast<GridToBeMade*>(this)->setTransform(made_->transformPtr());
+        return std::as_const(*made_).copyGrid();
+    }
+    void writeTopology(std::ostream& out) const override { made_->writeTopology(out); }
+    void writeBuffers(std::ostream& out) const override {
+        writeLeaves(made_->constTree(), out, made_->saveFloatAsHalf());
+        made_.reset();
+    }
+
+  private:
+    std::function<typename Grid::Ptr()> make_;
+    mutable typename Grid::Ptr made_;
+};
+
 template <class Grid>
 class ParallelGrid : public Grid {
   public:
@@ -59,11 +90,22 @@ class ParallelGrid : public Grid {
 }  // namespace
 
 openvdb::GridBase::ConstPtr writtenInParallel(const openvdb::GridBase::ConstPtr& grid) {
+    if (std::dynamic_pointer_cast<const MadeWhenWritten>(grid)) return grid;
     if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid))
         return std::make_shared<ParallelGrid<openvdb::FloatGrid>>(*floats);
     if (const auto bools = openvdb::gridConstPtrCast<openvdb::BoolGrid>(grid))
         return std::make_shared<ParallelGrid<openvdb::BoolGrid>>(*bools);
     return grid;
 }
+
+template <class Grid>
+openvdb::GridBase::ConstPtr madeWhenWritten(const std::string& name,
+                                            std::function<typename Grid::Ptr()> make) {
+    return std::make_shared<GridToBeMade<Grid>>(name, std::move(make));
+}
+template openvdb::GridBase::ConstPtr madeWhenWritten<openvdb::FloatGrid>(
+    const std::string&, std::function<openvdb::FloatGrid::Ptr()>);
+template openvdb::GridBase::ConstPtr madeWhenWritten<openvdb::BoolGrid>(
+    const std::string&, std::function<openvdb::BoolGrid::Ptr()>);
 
 }  // namespace isowave

@@ -1,6 +1,9 @@
 // Grids whose leaves are serialised by several threads; OpenVDB itself writes them one after the other.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "volume/vdb.h"
 
 namespace isowave {
@@ -10,5 +13,13 @@ namespace isowave {
 // kBlockLeaves that are put together in order, and no more than kBlocksAhead blocks are in memory at a time
 // (16 MB at most for float). Float and bool only; any other grid comes back as it is.
 openvdb::GridBase::ConstPtr writtenInParallel(const openvdb::GridBase::ConstPtr& grid);
+
+// A grid called `name` that is made when openvdb::io::Archive comes to write it, and goes once it has been written: of many, one
+// is in memory at a time. The bytes are those of writtenInParallel(make()). make() is called once for each time it is written.
+// REQUIRES: it is given to an Archive that writes statistics (as one does by default), and to nobody else: there is nothing in it.
+// Grid: FloatGrid or BoolGrid.
+template <class Grid>
+openvdb::GridBase::ConstPtr madeWhenWritten(const std::string& name,
+                                            std::function<typename Grid::Ptr()> make);
 
 }  // namespace isowave

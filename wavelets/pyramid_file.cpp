@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isowave/error.h"
+#include "volume/grid_bytes.h"
 #include "volume/vdb_file.h"
 #include "wavelets/step_order.h"
 
@@ -88,7 +89,7 @@ void checkFormat(const std::string& file, const openvdb::MetaMap& meta) {
 
 }  // namespace
 
-void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
+void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid, const StepSource& missing) {
     openvdb::MetaMap meta;
     meta.insertMeta(kFormat, openvdb::StringMetadata(kPyramid));
     meta.insertMeta(kVersion, openvdb::Int32Metadata(kPyramidFormatVersion));
@@ -105,8 +106,15 @@ void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid) {
     grids.push_back(named<openvdb::FloatGrid>(pyramid.coarsest.controlPoints, kControlPoints));
     grids.push_back(named<Shape>(pyramid.coarsest.shape, kShape));
     for (std::size_t s = 0; s < pyramid.steps.size(); ++s) {
-        grids.push_back(named<Shape>(pyramid.steps[s].shape, shapeName(s)));
-        grids.push_back(named<DetailGrid>(pyramid.steps[s].details, detailsName(s)));
+        const Step& step = pyramid.steps[s];
+        const int number = static_cast<int>(s);
+        grids.push_back(step.shape ? named<Shape>(step.shape, shapeName(s))
+                                   : madeWhenWritten<Shape>(
+                                         shapeName(s), [&missing, number] { return missing.shape(number); }));
+        grids.push_back(step.details ? named<DetailGrid>(step.details, detailsName(s))
+                                     : madeWhenWritten<DetailGrid>(detailsName(s), [&missing, number] {
+                                           return missing.details(number);
+                                       }));
     }
     if (pyramid.exact) grids.push_back(named<openvdb::FloatGrid>(pyramid.exact, kExact));
     writeVdb(path, grids, meta);

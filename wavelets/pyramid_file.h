@@ -13,6 +13,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "wavelets/pyramid.h"
 
@@ -20,8 +21,14 @@ namespace isowave::wavelets {
 
 inline constexpr int kPyramidFormatVersion = 1;
 
-// Temporary name, then rename. Throws OperationError.
-void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid);
+// Where steps lie that a pyramid has neither shape nor details of: each is asked for when its turn comes to be written.
+struct StepSource {
+    std::function<Shape::Ptr(int step)> shape;
+    std::function<DetailGrid::Ptr(int step)> details;
+};
+
+// Temporary name, then rename. missing: needed where the pyramid lacks steps. Throws OperationError.
+void writePyramid(const std::filesystem::path& path, const Pyramid& pyramid, const StepSource& missing = {});
 
 // Throws InputError: missing, truncated, not a .vdb, not a pyramid, another format version, K not a positive
 // number, first levels that contradict the axes, parts missing, a coarsest field and shape that differ. Whether the details of each step belong to

@@ -77,6 +77,16 @@ class ISOWAVE_EXPORT Pyramid {
 // Throws UsageError for a solid that is a pyramid already; Cancelled.
 ISOWAVE_EXPORT Pyramid analyse(Solid solid, const Progress& progress = {});
 
+struct PyramidCounts {
+    int steps = 0;
+    std::int64_t controlPoints = 0;       // of step 0
+    std::int64_t coefficientsStored = 0;  // details of all steps and the coarsest field
+};
+// analyse(solid).save(path), to the byte. Of an image in slabs (SolidOptions::slabs) no more than one of the file's grids is in memory
+// at a time. Throws as these two do.
+ISOWAVE_EXPORT PyramidCounts analyseTo(const std::filesystem::path& path, Solid solid,
+                                       const Progress& progress = {});
+
 // The solid that was taken apart, as open() gives it of the pyramid's file: levels are read off the pyramid, nothing is
 // analysed again. It shares the pyramid's memory.
 ISOWAVE_EXPORT Solid solidOf(const Pyramid& pyramid);

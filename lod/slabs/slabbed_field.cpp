@@ -159,24 +159,54 @@ wavelets::Descent SlabbedField::descend(const wavelets::AnalyseOptions& options,
     return descent;
 }
 
-wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& progress) const {
+SlabbedField::Apart SlabbedField::takeApart(const StepOrder& order, const Progress& progress) const {
     const Reached reached = descendInSlabs(
         {.order = order}, [](int) { return false; }, {}, true, progress);
-    wavelets::Pyramid rest =
-        wavelets::analyse(reached.field, {.order = order, .from = reached.halved}, progress);
+    Apart apart{wavelets::analyse(reached.field, {.order = order, .from = reached.halved}, progress),
+                reached.slabs, reached.details};
     std::vector<wavelets::Step> steps;
-    for (int step = 0; step < reached.halved.step; ++step) {
-        std::vector<Shape::Ptr> shapes;
-        std::vector<wavelets::DetailGrid::Ptr> details;
-        for (int slab = 0; slab < reached.slabs[static_cast<std::size_t>(step)]; ++slab) {
-            shapes.push_back(store_.shape(step, slab));
-            details.push_back(store_.details(step, slab));
-        }
-        steps.push_back({order.axisAfter(step), joinedShape(shapes), joinedDetails(details)});
+    for (int step = 0; step < reached.halved.step; ++step)
+        steps.push_back({order.axisAfter(step), nullptr, nullptr});
+    steps.insert(steps.end(), apart.pyramid.steps.begin(), apart.pyramid.steps.end());
+    apart.pyramid.steps = std::move(steps);
+    return apart;
+}
+
+wavelets::StepSource SlabbedField::stepsOf(const Apart& apart) const {
+    const auto slabsOf = [&apart](int step) { return apart.slabs[static_cast<std::size_t>(step)]; };
+    return {[this, slabsOf](int step) {
+                std::vector<Shape::Ptr> shapes;
+                for (int slab = 0; slab < slabsOf(step); ++slab) shapes.push_back(store_.shape(step, slab));
+                return joinedShape(shapes);
+            },
+            [this, slabsOf](int step) {
+                return joinedDetails(slabsOf(step), [&](int slab) { return store_.details(step, slab); });
+            }};
+}
+
+wavelets::Pyramid SlabbedField::analyse(const StepOrder& order, const Progress& progress) const {
+    Apart apart = takeApart(order, progress);
+    const wavelets::StepSource lacking = stepsOf(apart);
+    for (std::size_t step = 0; step < apart.slabs.size(); ++step) {
+        apart.pyramid.steps[step].shape = lacking.shape(static_cast<int>(step));
+        apart.pyramid.steps[step].details = lacking.details(static_cast<int>(step));
     }
-    steps.insert(steps.end(), rest.steps.begin(), rest.steps.end());
-    rest.steps = std::move(steps);
-    return rest;
+    return std::move(apart.pyramid);
+}
+
+PyramidCounts SlabbedField::analyseTo(const fs::path& path, const StepOrder& order,
+                                      std::map<std::string, std::string> source,
+                                      const Progress& progress) const {
+    Apart apart = takeApart(order, progress);
+    apart.pyramid.source = std::move(source);
+    progress("writing", 0);
+    wavelets::writePyramid(path, apart.pyramid, stepsOf(apart));
+    std::int64_t stored = static_cast<std::int64_t>(apart.pyramid.coarsest.shape->activeVoxelCount());
+    for (std::size_t step = 0; step < apart.pyramid.steps.size(); ++step)
+        stored += step < apart.details.size()
+                      ? apart.details[step]
+                      : static_cast<std::int64_t>(apart.pyramid.steps[step].details->activeVoxelCount());
+    return {apart.pyramid.stepCount(), extent_.controlPoints, stored};
 }
 
 }  // namespace isowave::lod

@@ -3,14 +3,17 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "isowave/pyramid.h"
 #include "lod/slabs/slab_fit.h"
 #include "lod/slabs/slab_steps.h"
 #include "lod/slabs/slab_workers.h"
+#include "wavelets/pyramid_file.h"
 
 namespace isowave::lod {
 
@@ -62,10 +65,21 @@ class SlabbedField {
                               const std::function<void(int step, const BSplineField&)>& onStep,
                               const Progress& progress) const;
     wavelets::Pyramid analyse(const StepOrder& order, const Progress& progress) const;
+    // The same into a file, of which one grid is in memory at a time.
+    PyramidCounts analyseTo(const std::filesystem::path& path, const StepOrder& order,
+                            std::map<std::string, std::string> source, const Progress& progress) const;
 
   private:
     BSplineField part(int slab) const;
     struct Reached;  // how far slabs came down
+    struct Apart {
+        wavelets::Pyramid pyramid;          // its finest steps lie in the folder
+        std::vector<int> slabs;             // of each of these
+        std::vector<std::int64_t> details;  // of each
+    };
+    Apart takeApart(const StepOrder& order, const Progress& progress) const;
+    // Those that lie in the folder. apart outlives it.
+    wavelets::StepSource stepsOf(const Apart& apart) const;
     void forget(int step, const SlabGrid& grid) const;
     Reached descendInSlabs(const wavelets::AnalyseOptions& options,
                            const std::function<bool(int)>& isAskedFor,

@@ -55,9 +55,13 @@ class Slabs : public ::testing::Test {
         analyse(open(image, options)).save(folder / "p.vdb");
         return bytesOf(folder / "p.vdb");
     }
+    std::string writtenAtOnce(const Image& image, const SolidOptions& options) const {
+        analyseTo(folder / "p.vdb", open(image, options));
+        return bytesOf(folder / "p.vdb");
+    }
     void expectSame(const Image& image, const SolidOptions& options, const std::vector<int>& counts) const {
         const std::string whole = pyramidOf(image, options);
-        for (const int slabs : counts) EXPECT_EQ(pyramidOf(image, in(slabs, options)), whole) << slabs;
+        for (const int slabs : counts) EXPECT_EQ(writtenAtOnce(image, in(slabs, options)), whole) << slabs;
         EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1) << "slabs are gone";
     }
     test::TempFolder folder;
@@ -74,6 +78,21 @@ TEST(SlabCuts, LieBetweenLeavesAndAreHalvedWithTheLattice) {
 }
 
 TEST_F(Slabs, GiveThePyramidOfTheWholeToTheByte) { expectSame(largeGyroid(), {.iso = 0}, {1, 2, 5, 400}); }
+
+TEST_F(Slabs, GiveItInMemoryToo) {
+    const std::string whole = pyramidOf(largeGyroid(), {.iso = 0});
+    EXPECT_EQ(pyramidOf(largeGyroid(), in(3)), whole);
+}
+
+TEST_F(Slabs, CountWhatIsWritten) {
+    const Pyramid whole = analyse(open(largeGyroid(), {.iso = 0}));
+    for (const SolidOptions& options : {in(3), SolidOptions{.iso = 0}}) {
+        const PyramidCounts counts = analyseTo(folder / "p.vdb", open(largeGyroid(), options));
+        EXPECT_EQ(counts.steps, whole.stepCount());
+        EXPECT_EQ(counts.controlPoints, whole.controlPoints());
+        EXPECT_EQ(counts.coefficientsStored, whole.coefficientsStored());
+    }
+}
 
 TEST_F(Slabs, GiveItForEveryWayToSayWhatIsInside) {
     expectSame(largeGyroid(), {.iso = 0, .invert = true}, {4});

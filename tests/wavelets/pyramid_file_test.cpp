@@ -6,6 +6,9 @@
 
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "isowave/error.h"
 #include "temp_folder.h"
@@ -100,6 +103,44 @@ TEST(PyramidFile, TheSamePyramidIsTheSameBytes) {
     writePyramid(folder / "a.vdb", small());
     writePyramid(folder / "b.vdb", small());
     EXPECT_EQ(bytesOf(folder / "a.vdb"), bytesOf(folder / "b.vdb"));
+}
+
+// Those that a pyramid lacks are asked for one after the other, each once, and none while another one is there.
+TEST(PyramidFile, StepsFromElsewhereAreTheSameBytes) {
+    const test::TempFolder folder("lacking");
+    const Pyramid whole = small();
+    writePyramid(folder / "a.vdb", whole);
+    Pyramid lacking = whole;
+    for (std::size_t step : {0, 1, 4})
+        lacking.steps[step].shape = nullptr, lacking.steps[step].details = nullptr;
+    std::vector<std::string> asked;
+    std::weak_ptr<void> last;
+    const auto copied = [&](const char* what, int step, const auto& grid) {
+        EXPECT_TRUE(last.expired()) << what << step;
+        asked.push_back(what + std::to_string(step));
+        const auto copy = grid->deepCopy();
+        last = copy;
+        return copy;
+    };
+    const StepSource source{
+        [&](int step) { return copied("shape", step, whole.steps[static_cast<std::size_t>(step)].shape); },
+        [&](int step) {
+            return copied("details", step, whole.steps[static_cast<std::size_t>(step)].details);
+        }};
+    writePyramid(folder / "b.vdb", lacking, source);
+    EXPECT_EQ(bytesOf(folder / "a.vdb"), bytesOf(folder / "b.vdb"));
+    EXPECT_THAT(asked,
+                testing::ElementsAre("shape0", "details0", "shape1", "details1", "shape4", "details4"));
+}
+
+TEST(PyramidFile, StepsThatCannotBeHadLeaveNothing) {
+    const test::TempFolder folder("gone");
+    Pyramid lacking = small();
+    lacking.steps[1].details = nullptr;
+    const StepSource source{{},
+                            [](int) -> DetailGrid::Ptr { throw InputError("step_1_0.vdb", "is missing"); }};
+    EXPECT_THROW(writePyramid(folder / "b.vdb", lacking, source), InputError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(PyramidFile, RejectsEveryTruncation) {

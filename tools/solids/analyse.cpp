@@ -69,14 +69,13 @@ int Analyse::runParts(Console& console) const {
 
 std::string Analyse::write(const Part& part, const Progress& progress) const {
     OutputFile out(part.output);
-    const Pyramid pyramid =
-        analyse(open(part.input, withSlabsBeside(solid_, part.output), progress), progress);
-    pyramid.save(part.output);
+    const PyramidCounts counts =
+        analyseTo(part.output, open(part.input, withSlabsBeside(solid_, part.output), progress), progress);
     out.commit();
-    const std::int64_t points = pyramid.controlPoints(), stored = pyramid.coefficientsStored();
-    return fmt::format("{} steps, {} coefficients stored for {} control points (x{:.3f})",
-                       pyramid.stepCount(), grouped(stored), grouped(points),
-                       static_cast<double>(stored) / static_cast<double>(points));
+    return fmt::format(
+        "{} steps, {} coefficients stored for {} control points (x{:.3f})", counts.steps,
+        grouped(counts.coefficientsStored), grouped(counts.controlPoints),
+        static_cast<double>(counts.coefficientsStored) / static_cast<double>(counts.controlPoints));
 }
 
 }  // namespace

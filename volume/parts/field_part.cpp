@@ -130,11 +130,15 @@ BSplineField joinedField(const std::vector<BSplineField>& parts) {
     return field;
 }
 
-openvdb::FloatGrid::Ptr joinedDetails(const std::vector<openvdb::FloatGrid::Ptr>& parts) {
-    assert(!parts.empty());
+openvdb::FloatGrid::Ptr joinedDetails(int parts,
+                                      const std::function<openvdb::FloatGrid::Ptr(int part)>& get) {
+    assert(parts > 0);
     auto joined = openvdb::FloatGrid::create(0.0f);
-    for (const auto& part : parts) copyLeaves(part->constTree(), kEverywhere, Coord(0), joined->tree());
-    joined->setTransform(parts.front()->transform().copy());
+    for (int i = 0; i < parts; ++i) {
+        const openvdb::FloatGrid::Ptr part = get(i);
+        copyLeaves(part->constTree(), kEverywhere, Coord(0), joined->tree());
+        if (i == 0) joined->setTransform(part->transform().copy());
+    }
     return joined;
 }
 

@@ -7,6 +7,7 @@
 // the byte of its file.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "volume/field.h"
@@ -28,8 +29,8 @@ BSplineField joinedPart(const std::vector<BSplineField>& parts);
 // REQUIRES: at least one; the signs of all together are those of a field. Copies leaves.
 BSplineField joinedField(const std::vector<BSplineField>& parts);
 
-// The same for grids that have a background of 0 and no signs.
-openvdb::FloatGrid::Ptr joinedDetails(const std::vector<openvdb::FloatGrid::Ptr>& parts);
+// The same for grids that have a background of 0 and no signs. Each of them is asked for when its turn comes, and let go.
+openvdb::FloatGrid::Ptr joinedDetails(int parts, const std::function<openvdb::FloatGrid::Ptr(int part)>& get);
 
 // The same for shapes.
 Shape::Ptr joinedShape(const std::vector<Shape::Ptr>& parts);
