@@ -53,8 +53,8 @@ struct MadeWhenWritten {
     virtual ~MadeWhenWritten() = default;
 };
 
-// Archive::write() asks a grid, in this order, for a copy (to which it adds statistics, and whose metadata it writes), for its
-// transform, its topology, its buffers.
+// What Archive::write() asks a grid for first is a copy, to which it adds statistics and whose metadata it writes; then it reads the
+// grid itself, and writes its buffers last.
 template <class Grid>
 class GridToBeMade : public Grid, public MadeWhenWritten {
   public:
@@ -62,20 +62,25 @@ class GridToBeMade : public Grid, public MadeWhenWritten {
         this->setName(name);
     }
     openvdb::GridBase::ConstPtr copyGrid() const override {
-        made_ = make_();
-        made_->setName(this->getName());
-        const_cast<GridToBeMade*>(this)->setTransform(made_->transformPtr());
-        return std::as_const(*made_).copyGrid();
+        const typename Grid::Ptr made = make_();
+        made->setName(this->getName());
+        put(made->treePtr(), made->transformPtr());
+        return std::as_const(*made).copyGrid();
     }
-    void writeTopology(std::ostream& out) const override { made_->writeTopology(out); }
     void writeBuffers(std::ostream& out) const override {
-        writeLeaves(made_->constTree(), out, made_->saveFloatAsHalf());
-        made_.reset();
+        writeLeaves(this->constTree(), out, this->saveFloatAsHalf());
+        put(std::make_shared<typename Grid::TreeType>(this->background()),
+            openvdb::math::Transform::createLinearTransform());
     }
 
   private:
+    // Archive takes grids that are const; this one is none (madeWhenWritten()).
+    void put(const typename Grid::TreePtrType& tree, const openvdb::math::Transform::Ptr& transform) const {
+        auto& self = const_cast<GridToBeMade&>(*this);
+        self.setTree(tree);
+        self.setTransform(transform);
+    }
     std::function<typename Grid::Ptr()> make_;
-    mutable typename Grid::Ptr made_;
 };
 
 template <class Grid>
