@@ -59,7 +59,8 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
     FitReport report;
     std::optional<WallSummary> walls;
     const auto allow = [&](double bytesEach, auto count) {
-        refuseTooLarge(solid.name(), bytesEach * static_cast<double>(count), memoryLimit, remedy);
+        refuseTooLarge(solid.name(), bytesFor(samples.fieldOnly, bytesEach * static_cast<double>(count)),
+                       memoryLimit, remedy);
     };
     if (fitting.method != FitMethod::distance) {
         const NodeCollection nodes = [&] {

@@ -30,6 +30,7 @@ struct Samples {
                               const openvdb::Coord& shift)>
         walls = {};
     double bytesPerBandPoint = kBytesPerBandPoint;
+    bool fieldOnly = false;  // SolidOptions
 };
 
 // Fills solid.field and solid.fit. remedy: what makes the job smaller. Throws InputError where the rest of the job would

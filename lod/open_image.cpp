@@ -253,8 +253,13 @@ void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, co
                                refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points),
                                               limit, "take more --slabs");
                            }};
+    const auto allowWhole = [name = solid.name(), limit, fieldOnly = options.fieldOnly](std::int64_t points) {
+        refuseTooLarge(name, bytesFor(fieldOnly, kBytesPerImageBandPoint * static_cast<double>(points)),
+                       limit,
+                       "its levels are made of the whole: take coarser ones with --hold none, or crop it");
+    };
     SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask),
-                  stampOf(solid.name(), options.image)};
+                  stampOf(solid.name(), options.image), allowWhole};
     if (work.folder.empty()) work.folder = std::filesystem::temp_directory_path();
     solid.slabs =
         std::make_shared<SlabbedField>(std::move(*seen.stream), plan, *options.slabs, work, progress);
@@ -299,7 +304,8 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
         seen.stream.reset();
         return grid;
     };
-    fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint}, limit, remedy, progress, clock);
+    fit(solid, fitting, {nodes, distance, {}, kBytesPerImageBandPoint, options.fieldOnly}, limit, remedy,
+        progress, clock);
     putVolume(solid, plan.kind, volumeInside(*solid.field->shape));
     requireSurface(*solid.field, name, kNoSurface);
     return solid;

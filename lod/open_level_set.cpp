@@ -99,7 +99,10 @@ Solid::State openLevelSet(openvdb::FloatGrid::Ptr levelSet, const std::string& n
         levelSet.reset();
         return grid;
     };
-    fit(solid, fitting, {[&] { return nodesOfDistance(*distance()); }, distance},
+    fit(solid, fitting,
+        {.nodes = [&] { return nodesOfDistance(*distance()); },
+         .distance = distance,
+         .fieldOnly = options.fieldOnly},
         memoryLimit(options.maxMemory), "resample it to larger voxels", progress, clock);
     requireSurface(*solid.field, name,
                    fmt::format("no lattice point lies below {:g}, or none above it", iso));

@@ -206,7 +206,9 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
 
     const Fitting fitting = fittingOf(options, FitMethod::distance);
     const double voxel = voxelSizeFor(mesh, options, name, progress), limit = memoryLimit(options.maxMemory);
-    refuseTooLarge(name, kBytesPerBandPoint * bandPointsOf(mesh, voxel, fitting, options), limit, kRemedy);
+    refuseTooLarge(
+        name, bytesFor(options.fieldOnly, kBytesPerBandPoint * bandPointsOf(mesh, voxel, fitting, options)),
+        limit, kRemedy);
     const auto transform = transformForMesh(mesh, voxel);
     Solid::State solid;
     solid.input = reportOf(input, name, voxel);
@@ -223,6 +225,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         return distanceFromMesh(mesh, *transform, fitting.distance.halfWidth, input.repair.evenOdd, progress);
     };
     Samples samples{[&] { return nodesOfDistance(*distance()); }, distance};
+    samples.fieldOnly = options.fieldOnly;
     std::vector<openvdb::Vec3d> points;
     std::optional<FineSigns> signs;  // a sheet has none
     if (!options.thicken) {

@@ -104,6 +104,9 @@ struct SolidOptions {
 
     // Bytes that the job may take; default: 70 % of the computer's (or of the container's) memory.
     std::optional<double> maxMemory = {};
+    // No levels will be made of it, only its field and pyramid: these take less than a third of the memory that levels do, and
+    // maxMemory refuses less.
+    bool fieldOnly = false;
 
     // ---- in slabs: images, fit by distance or binary
     // So many slabs of slices are read, fitted and halved by themselves and lie in a folder in between; memory is that of a slab. The

@@ -52,6 +52,7 @@ DryRun begun(InputReport::Kind kind, const SolidOptions& options, FitMethod usua
     run.kind = kind;
     run.fit = options.fit.value_or(usual);
     run.memoryLimit = memoryLimit(options.maxMemory);
+    run.fieldOnly = options.fieldOnly;
     return run;
 }
 
@@ -60,7 +61,7 @@ DryRun ofMesh(const std::filesystem::path& path, const SolidOptions& options, co
     DryRun run = begun(InputReport::Kind::mesh, options, FitMethod::distance);
     run.voxels = *plan.input.dimensions;
     run.spacing = *plan.input.spacing;
-    run.memoryBytes = kBytesOfProgram + kBytesPerBandPoint * plan.bandPoints;
+    run.memoryBytes = kBytesOfProgram + bytesFor(options.fieldOnly, kBytesPerBandPoint * plan.bandPoints);
     run.lastLevel = lastLevelOf(run.voxels, fittingOf(options, run.fit).distance.band, run.order);
     std::vector<double> walls;
     if (options.thicken)
@@ -100,9 +101,9 @@ DryRun ofImage(const std::filesystem::path& path, const SolidOptions& options, c
     const VoxelFacts facts = factsOf(insideOf(plan.stream, plan.shape, progress), kShares, progress);
     const Fitting fitting = fittingOf(options, plan.fit);
     const double band = static_cast<double>(facts.faces) * 2 / 3 * 2 * fitting.distance.halfWidth;
-    run.memoryBytes =
-        kBytesOfProgram +
-        (run.fit == FitMethod::distance ? kBytesPerBandPoint * band : kBytesPerNode * double(facts.cells));
+    const double most =
+        run.fit == FitMethod::distance ? kBytesPerBandPoint * band : kBytesPerNode * double(facts.cells);
+    run.memoryBytes = kBytesOfProgram + bytesFor(options.fieldOnly, most);
     std::array<std::int64_t, 3> box{};
     for (int a = 0; a < 3; ++a) box[a] = std::max<std::int64_t>(1, facts.high[a] - facts.low[a] + 1);
     run.lastLevel = lastLevelOf(box, fitting.distance.band, run.order);
@@ -119,7 +120,9 @@ DryRun ofLevelSet(const std::filesystem::path& path, const SolidOptions& options
     const auto spacing = grid->transform().voxelSize();
     run.voxels = {dim.x(), dim.y(), dim.z()};
     run.spacing = {spacing.x(), spacing.y(), spacing.z()};
-    run.memoryBytes = kBytesOfProgram + kBytesPerBandPoint * static_cast<double>(grid->activeVoxelCount());
+    run.memoryBytes =
+        kBytesOfProgram +
+        bytesFor(options.fieldOnly, kBytesPerBandPoint * static_cast<double>(grid->activeVoxelCount()));
     run.order = orderFor(run.spacing, options, path.string(), progress);
     run.lastLevel = lastLevelOf(run.voxels, 0, run.order);  // the active voxels are the band
     return run;

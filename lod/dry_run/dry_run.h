@@ -20,6 +20,7 @@ struct DryRun {
     // About, at the peak of the fit: what lod/memory.h reckons with. A whole ladder was seen to take 1.1 to 2.0 times that
     // (a torus at 64 and 128 voxels, a gearwheel at 96).
     double memoryBytes = 0;
+    bool fieldOnly = false;  // memoryBytes is what a pyramid takes, not levels
     double memoryLimit = 0;  // bytes; a fit that takes more is refused
     int lastLevel = 0;       // by the size of the lattice; the ladder ends before it where the solid vanishes
 

@@ -50,7 +50,8 @@ SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int colu
                            const Progress& progress)
     : plan_(plan),
       hidden_(work.map ? std::optional<SlabFolder>() : std::optional<SlabFolder>(std::in_place, work.folder)),
-      store_(hidden_ ? hidden_->path() : work.folder) {
+      store_(hidden_ ? hidden_->path() : work.folder),
+      allowWhole_(work.allowWhole) {
     const auto ySize = stream.header().size[1];
     if (work.map)
         workers_ = std::make_unique<SlabsByMap>(work.map, SlabJob{work.folder, work.image, work.mask});
@@ -79,6 +80,7 @@ bool SlabbedField::hasSurface() const { return inside_ > 0 && outside_ && extent
 BSplineField SlabbedField::part(int slab) const { return fittedPart(store_, slab, origin_); }
 
 BSplineField SlabbedField::whole() const {
+    if (allowWhole_) allowWhole_(report_.latticePoints);
     std::vector<BSplineField> parts;
     for (int slab = 0; slab < slabs(); ++slab) parts.push_back(part(slab));
     return joinedField(parts);

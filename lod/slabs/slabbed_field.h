@@ -38,6 +38,8 @@ struct SlabWork {
     SlabMap map = {};              // none: one slab after the other
     std::vector<float> mask = {};  // values that the stream takes as inside
     std::string image = {};        // whatever changes when the image or the way to read it does
+    std::function<void(std::int64_t latticePoints)> allowWhole =
+        {};  // throws where step 0 may not be one field
 };
 
 class SlabbedField {
@@ -94,6 +96,7 @@ class SlabbedField {
     std::int64_t inside_ = 0;
     bool outside_ = false;
     double K_ = 1;
+    std::function<void(std::int64_t)> allowWhole_;
     SlabOrigin origin_;
     openvdb::math::Transform::Ptr transform_;
     wavelets::FieldExtent extent_;

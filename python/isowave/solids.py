@@ -44,6 +44,13 @@ class InSlabs:
         return _native.open_in_slabs(self.path, options, self.slabs, self.folder, partial(self.run, options), watch)
 
 
+def _open_for_field(source: Any, faces: Any, geometry: Geometry, options: Given, watch: Watch, finest: int = 0) -> _native.Solid:
+    """No levels are made: they would take most of the memory that is allowed for."""
+    if isinstance(source, Pyramid):
+        return _open(source, faces, geometry, options, watch)
+    return _open(source, faces, geometry, [*options, ("--field-only", "")], watch, finest)
+
+
 def _open(source: Any, faces: Any, geometry: Geometry, options: Given, watch: Watch, finest: int = 0) -> _native.Solid:
     if isinstance(source, InSlabs):
         geometry.refuse(f"{source.path} has a place of its own")
@@ -655,7 +662,7 @@ def analyse(
         step_axes=step_axes, size=size, type=type, endian=endian, header_bytes=header_bytes, series=series, stack=stack, channel=channel,
         time=time, resample_slices=resample_slices, grid=grid, max_memory=max_memory, slabs=slabs,
     )  # fmt: skip
-    return Pyramid(_native.analyse(_open(source, faces, geometry, opening, watch), watch), watch.remarks)
+    return Pyramid(_native.analyse(_open_for_field(source, faces, geometry, opening, watch), watch), watch.remarks)
 
 
 def field(
@@ -685,4 +692,4 @@ def field(
         raise UsageError(f"--step: '{step}' is below 0")
     watch = Watch(progress, threads)
     geometry = Geometry(affine, spacing, origin, direction, axes, space)
-    return Field(_native.field_of(_open(source, faces, geometry, given(**options), watch, step), step, watch))
+    return Field(_native.field_of(_open_for_field(source, faces, geometry, given(**options), watch, step), step, watch))

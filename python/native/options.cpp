@@ -15,6 +15,7 @@ void declare(tools::OptionList& options, SolidOptions& solid, LevelOptions& leve
     tools::declareBudgets(options, budgets, levels);
     tools::declareSolid(options, solid);
     tools::declareMaxMemory(options, solid);
+    tools::declareSlabs(options, solid);
 }
 
 }  // namespace
@@ -36,6 +37,7 @@ void take(const GivenOptions& given, const tools::OptionList& options) {
 SolidChoices::SolidChoices(const GivenOptions& given) {
     tools::OptionList options;
     declare(options, solid, levels, budgets);
+    options.flag("--field-only", "no levels will be made (isowave.analyse, field)", solid.fieldOnly);
     take(given, options);
     if (budgets.any()) budgets.maxGenus = levels.maxGenus;
 }

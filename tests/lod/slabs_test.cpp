@@ -234,6 +234,25 @@ TEST_F(Slabs, AreRefusedForFitsThatNeedTheWhole) {
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+// A pyramid is made in slabs; levels are made of the whole, but for coarse ones that nothing is held in.
+TEST_F(Slabs, AreRefusedWhereLevelsWouldTakeMoreMemoryThanAllowed) {
+    SolidOptions options = in(3);
+    double refused = 1e6;  // of the whole
+    const auto ofWhole = [&] { open(largeGyroid(), {.iso = 0, .maxMemory = refused}); };
+    while (!refusal(ofWhole).empty()) refused *= 1.2;
+    options.maxMemory = refused / 1.3;
+    EXPECT_THAT(refusal([&] {
+                    makeLadder(open(largeGyroid(), options), {.levels = StepRange{0, 1}});
+                }),
+                HasSubstr("its levels are made of the whole: take coarser ones with --hold none"));
+    EXPECT_EQ(
+        refusal([&] {
+            makeLadder(open(largeGyroid(), options), {.levels = StepRange{2, 2}, .hold = Holding::none});
+        }),
+        "");
+    EXPECT_EQ(refusal([&] { analyseTo(folder / "p.vdb", open(largeGyroid(), options)); }), "");
+}
+
 TEST_F(Slabs, SayWhatIsWrongWithATask) {
     const fs::path image = folder / "gyroid.nrrd";
     EXPECT_THAT(refusal([&] { runSlabTask(image, {}, "no task"); }), HasSubstr("one version of isowave"));

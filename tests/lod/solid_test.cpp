@@ -312,6 +312,13 @@ TEST(MeshSolid, IsRefusedWhereItWouldTakeMoreMemoryThanAllowed) {
     EXPECT_THAT(refusal([] { open(ringMesh(), {.voxels = 48, .maxMemory = 1e6}); }),
                 HasSubstr("over the limit of 1 MB; give fewer --voxels"));
     EXPECT_EQ(refusal([] { open(ringMesh(), {.voxels = 48, .maxMemory = 8e9}); }), "");
+    // A pyramid takes less than levels.
+    double least = 1e6;
+    while (!refusal([&] { open(ringMesh(), {.voxels = 48, .maxMemory = least}); }).empty()) least *= 1.1;
+    EXPECT_EQ(refusal([&] { open(ringMesh(), {.voxels = 48, .maxMemory = 0.4 * least, .fieldOnly = true}); }),
+              "");
+    EXPECT_NE(refusal([&] { open(ringMesh(), {.voxels = 48, .maxMemory = 0.2 * least, .fieldOnly = true}); }),
+              "");
 }
 
 // ---- level sets

@@ -254,3 +254,31 @@ def test_an_ome_zarr_gives_what_its_array_gives_to_the_bit(cranium, tmp_path):
     with pytest.raises(isowave.UsageError) as caught:
         isowave.lod(tmp_path / "scan.ome.zarr", channel=1)
     assert str(caught.value) == complaint(*words)
+
+
+def test_slabs_give_what_the_whole_does(cranium, tmp_path):
+    array, _ = cranium
+    options = dict(spacing=(0.25, 0.25, 0.5), iso=300)
+    assert same(isowave.lod(array, slabs=3, levels=1, **options), isowave.lod(array, levels=1, **options))
+    for slabs, name in ((None, "whole.vdb"), (3, "parts.vdb")):
+        isowave.analyse(array, slabs=slabs, **options).save(tmp_path / name)
+    assert (tmp_path / "whole.vdb").read_bytes() == (tmp_path / "parts.vdb").read_bytes()
+    with pytest.raises(isowave.UsageError, match="--slabs"):
+        isowave.lod(array, slabs=0, **options)
+
+
+def test_a_pyramid_may_take_less_memory_than_levels(cranium):
+    array, _ = cranium
+    options = dict(spacing=(1, 1, 1), iso=300)
+    needed = next(gigabytes for gigabytes in np.geomspace(1e-3, 1, 40) if not refused(isowave.analyse, array, gigabytes, options))
+    assert refused(isowave.lod, array, needed, options)
+    assert not refused(isowave.field, array, needed, options)
+
+
+def refused(make, array, gigabytes, options):
+    try:
+        make(array, max_memory=gigabytes, **options)
+    except isowave.InputError as error:
+        assert "over the limit" in str(error)
+        return True
+    return False

@@ -40,6 +40,7 @@ Analyse::Analyse()
     options_.flag("--dry-run",
                   "make nothing; say voxels, memory, levels, and how many voxels thin the thinnest walls are",
                   dryRun_);
+    solid_.fieldOnly = true;
     declareSolid(options_, solid_);
     declareThreads();
     declareMaxMemory(options_, solid_);

@@ -12,11 +12,12 @@ namespace {
 
 std::string memoryText(const lod::DryRun& run) {
     const std::string needed = bytesText(run.memoryBytes), limit = bytesText(run.memoryLimit);
-    return run.memoryBytes > run.memoryLimit
-               ? fmt::format("about {} for the fit, more than the limit of {}: it would be refused", needed,
-                             limit)
-               : fmt::format("about {} for the fit (limit {}); levels take up to about twice that", needed,
-                             limit);
+    const char* what = run.fieldOnly ? "for the pyramid" : "for the fit";
+    if (run.memoryBytes > run.memoryLimit)
+        return fmt::format("about {} {}, more than the limit of {}: it would be refused", needed, what,
+                           limit);
+    return fmt::format("about {} {} (limit {}){}", needed, what, limit,
+                       run.fieldOnly ? "" : "; levels take up to about twice that");
 }
 
 std::string wallText(const lod::DryRun& run) {

@@ -41,7 +41,10 @@ class FieldCommand : public Command {
     int run(Console& console) override {
         if (output_->extension() != ".vdb") throw UsageError("-o: a field is a .vdb file; name it so");
         step_.check();
-        if (hold_ == Holding::none) step_.limitReading(solid_);
+        if (hold_ == Holding::none) {
+            step_.limitReading(solid_);
+            solid_.fieldOnly = true;
+        }
         OutputFile out(*output_);
         Solid solid = open(arguments[0], withSlabsBeside(solid_, *output_), console.progress());
         const int step = step_.of(solid);
