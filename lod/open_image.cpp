@@ -256,7 +256,7 @@ void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, co
     const auto allowWhole = [name = solid.name(), limit, fieldOnly = options.fieldOnly](std::int64_t points) {
         refuseTooLarge(name, bytesFor(fieldOnly, kBytesPerImageBandPoint * static_cast<double>(points)),
                        limit,
-                       "its levels are made of the whole: take coarser ones with --hold none, or crop it");
+                       "levels need the whole: take a coarser one with isowave mesh --hold none, or crop it");
     };
     SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask),
                   stampOf(solid.name(), options.image), allowWhole};
