@@ -1,0 +1,106 @@
+// Inputs that are odd but legal, or broken in ways that were once passed over: right, or a line that says what is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <tiffio.h>
+
+#include "gzip.h"
+#include "tests/io/image/files.h"
+#include "tests/io/image/itk.h"
+#include "tests/io/image/written.h"
+
+namespace isowave {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes;
+using test::bytesOf;
+using test::put;
+using test::refusal;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t kMegabyte = 1 << 20;
+
+class BadImageOrOdd : public test::ImageFiles {
+  protected:
+    // Four voxels of int16, 1 to 4, with these lines in the header.
+    fs::path nrrd(const std::string& lines) {
+        return put(folder / "a.nrrd", "NRRD0005\ntype: int16\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n" +
+                                          lines + "\n" + bytes<std::int16_t>({1, 2, 3, 4}));
+    }
+    fs::path slice(const std::string& name, unsigned char value) {
+        const auto image = itk::Image<unsigned char, 2>::New();
+        image->SetRegions(itk::Image<unsigned char, 2>::RegionType({3, 2}));
+        image->Allocate();
+        image->FillBuffer(value);
+        fs::create_directories((folder / name).parent_path());
+        test::writeItk(image.GetPointer(), folder / name);
+        return folder / name;
+    }
+};
+
+// ---- gzip
+
+TEST_F(BadImageOrOdd, GzipThatGivesNoHeaderSaysThatItIsTheGzip) {
+    test::NiftiFile file;
+    file.sformCode = 1;
+    const std::string plain = file.file(), packed = test::gzipped(plain);
+    for (const char* name :
+         {"a.nii.gz", "a.nrrd.gz", "a.mha.gz", "a.mgz", "a.mrc.gz", "a.npy.gz", "a.vti.gz", "a.nii"})
+        EXPECT_THAT(refusal(put(folder / name, packed.substr(0, packed.size() / 2))),
+                    AllOf(HasSubstr("gzip stream breaks off"), HasSubstr("copy or download it again")))
+            << name;
+    std::string changed = packed;
+    changed[packed.size() - 8] = static_cast<char>(changed[packed.size() - 8] ^ 1);  // the checksum
+    EXPECT_THAT(refusal(put(folder / "a.nii.gz", changed)),
+                AllOf(HasSubstr("is damaged (incorrect data check)"),
+                      HasSubstr("after " + std::to_string(plain.size()))));
+    EXPECT_THAT(refusal(put(folder / "a.nii.gz", test::gzipped(packed))), HasSubstr("gzip twice"));
+    // Padding behind the end, and several streams after one another, are right.
+    EXPECT_EQ(refusal(put(folder / "a.nii.gz", packed + std::string(100, '\0'))), "");
+    EXPECT_EQ(refusal(put(folder / "a.nii.gz",
+                          test::gzipped(plain.substr(0, 100)) + test::gzipped(plain.substr(100)))),
+              "");
+}
+
+// ---- NRRD and MetaImage
+
+TEST_F(BadImageOrOdd, NrrdSkipsThatCannotBeAreRefused) {
+    const std::string little = "endian: little\n";
+    EXPECT_THAT(readImage(nrrd(little)).values, ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(readImage(nrrd(little + "byte skip: -1\n")).values, ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(refusal(nrrd(little + "byte skip: -2\n")), HasSubstr("'byte skip' says -2"));
+    EXPECT_THAT(refusal(nrrd(little + "line skip: -1\n")), HasSubstr("'line skip' says -1"));
+    // It was taken for 0, and what lies there for voxels.
+    for (const char* key : {"byte skip", "line skip"})
+        EXPECT_THAT(refusal(nrrd(little + key + ": 99999999999999999999\n")),
+                    AllOf(HasSubstr("99999999999999999999"), HasSubstr("expected whole numbers below 2^63")));
+    EXPECT_THAT(refusal(nrrd(little + "byte skip: 9223372036854775807\n")), HasSubstr("'byte skip' says"));
+}
+
+TEST_F(BadImageOrOdd, NrrdGeometryThatSaysNothingIsRefused) {
+    const std::string little = "endian: little\n";
+    const auto expect = [&](const std::string& lines, const std::string& part) {
+        EXPECT_THAT(refusal(nrrd(lines)), HasSubstr(part)) << lines;
+    };
+    expect("", "its header has no 'endian'");
+    expect("endian: middle\n", "'endian' says 'middle'");
+    expect(little + "spacings: 0.7 0.8\n", "'spacings' says '0.7 0.8'; expected 3 numbers");
+    expect(little + "spacings: a b c\n", "expected 3 numbers");
+    expect(little + "axis mins: 1\n", "'axis mins' says '1'");
+    EXPECT_EQ(refusal(nrrd(little + "spacings: 0.7 0.8 nan\n")), "");
+    const std::string lps = little + "space: LPS\nspace directions: ";
+    expect(lps + "none none none\n", "'space directions' gives 0 of its 3 axes a direction");
+    expect(lps + "(1,0,0) (0,1,0) (nan,0,1)\n", "which are not all finite");
+}
+
+TEST_F(BadImageOrOdd, AHeaderWithoutAnEndIsSaidSo) {
+    const std::string comment = "# " + std::string(kMegabyte, 'x') + "\n";
+    EXPECT_THAT(refusal(nrrd("endian: little\n" + comment)), HasSubstr("goes on beyond 1048576 bytes"));
+}
+
+}  // namespace
+}  // namespace isowave
