@@ -102,5 +102,32 @@ TEST_F(BadImageOrOdd, AHeaderWithoutAnEndIsSaidSo) {
     EXPECT_THAT(refusal(nrrd("endian: little\n" + comment)), HasSubstr("goes on beyond 1048576 bytes"));
 }
 
+TEST_F(BadImageOrOdd, IntensityOfMetaImageIsNotAppliedAndSaid) {
+    const std::string header =
+        "ObjectType = Image\nNDims = 3\nDimSize = 2 2 1\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\n";
+    const auto warnings = [&](const std::string& lines) {
+        const Image image =
+            readImage(put(folder / "a.mha", header + lines + "ElementDataFile = LOCAL\n\1\2\3\4"));
+        EXPECT_THAT(image.values, ElementsAre(1, 2, 3, 4));
+        return image.warnings;
+    };
+    EXPECT_THAT(warnings("ElementToIntensityFunctionSlope = 2\n"), ElementsAre(HasSubstr("are not applied")));
+    EXPECT_THAT(warnings("ElementToIntensityFunctionOffset = -5\n"),
+                ElementsAre(HasSubstr("are not applied")));
+    EXPECT_THAT(warnings("ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = 0\n"),
+                IsEmpty());
+}
+
+// ---- numbers
+
+TEST_F(BadImageOrOdd, NumbersBeyondFloat32AreNotSaidToBeInfinite) {
+    test::NiftiFile file;
+    file.sformCode = 1;
+    file.type = 64;
+    file.voxels = bytes<double>({1, 1e300, 3, 4, 5, 6, 7, 8});
+    EXPECT_THAT(refusal(put(folder / "a.nii", file.file())),
+                AllOf(HasSubstr("voxel (1, 0, 0) is inf"), HasSubstr("or beyond float32's 3.4e38")));
+}
+
 }  // namespace
 }  // namespace isowave
