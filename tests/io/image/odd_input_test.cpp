@@ -66,6 +66,25 @@ TEST_F(BadImageOrOdd, GzipThatGivesNoHeaderSaysThatItIsTheGzip) {
               "");
 }
 
+// ---- names
+
+TEST_F(BadImageOrOdd, APipeIsNotWaitedFor) {
+    for (const char* name : {"a.nii", "a.nrrd", "a.png", "a"}) {
+        ASSERT_EQ(::mkfifo((folder / name).c_str(), 0600), 0);
+        EXPECT_THAT(voxelFilesOf(folder / name), IsEmpty());  // which opened it, and waited for who writes it
+        EXPECT_THAT(refusal(folder / name), HasSubstr("is neither a file nor a folder")) << name;
+    }
+}
+
+TEST_F(BadImageOrOdd, ANameThatCannotBeLookedAtIsSaidSo) {
+    fs::create_symlink("loop.nii", folder / "loop.nii");
+    EXPECT_THAT(refusal(folder / "loop.nii"),
+                HasSubstr("cannot be looked at (Too many levels of symbolic links)"));
+    EXPECT_THAT(refusal(folder / (std::string(300, 'y') + ".nii")),
+                HasSubstr("cannot be looked at (File name too long)"));
+    EXPECT_THAT(refusal(folder / "none.nii"), HasSubstr("no such file or folder"));
+}
+
 // ---- NRRD and MetaImage
 
 TEST_F(BadImageOrOdd, NrrdSkipsThatCannotBeAreRefused) {
@@ -116,6 +135,23 @@ TEST_F(BadImageOrOdd, IntensityOfMetaImageIsNotAppliedAndSaid) {
                 ElementsAre(HasSubstr("are not applied")));
     EXPECT_THAT(warnings("ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = 0\n"),
                 IsEmpty());
+}
+
+// ---- pictures
+
+TEST_F(BadImageOrOdd, APictureIsWhatItBeginsWithWhateverItsName) {
+    for (int k = 0; k < 3; ++k) {
+        const std::string number = std::to_string(k);
+        const auto value = static_cast<unsigned char>(10 * k);
+        fs::rename(slice("png/s" + number + ".png", value), folder / "png" / ("s" + number + ".tif"));
+        fs::rename(slice("tif/s" + number + ".tif", value), folder / "tif" / ("s" + number + ".png"));
+        fs::rename(slice("bmp/s" + number + ".bmp", value), folder / "bmp" / ("s" + number + ".jpg"));
+    }
+    EXPECT_EQ(readImage(folder / "png").format, "PNG slices");
+    EXPECT_EQ(readImage(folder / "tif").format, "TIFF slices");
+    EXPECT_EQ(readImage(folder / "bmp").format, "BMP slices");
+    for (const char* name : {"png", "tif", "bmp"})
+        EXPECT_EQ(readImage(folder / name).values.back(), 20) << name;
 }
 
 // ---- numbers
