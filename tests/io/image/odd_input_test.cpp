@@ -154,6 +154,68 @@ TEST_F(BadImageOrOdd, APictureIsWhatItBeginsWithWhateverItsName) {
         EXPECT_EQ(readImage(folder / name).values.back(), 20) << name;
 }
 
+TEST_F(BadImageOrOdd, SlicesThatMayBeMissingAreSaid) {
+    const auto warned = [&](const std::string& stack, const std::vector<std::string>& names) {
+        for (const std::string& name : names) slice(stack + "/" + name + ".png", 1);
+        for (const std::string& warning : readImage(folder / stack).warnings)
+            if (warning.find("slices may be missing") != std::string::npos) return warning;
+        return std::string();
+    };
+    EXPECT_THAT(warned("gap", {"ct_03_a", "ct_04_a", "ct_05_a", "ct_07_a", "ct_08_a"}),
+                HasSubstr("numbers jump from ct_05_a.png to ct_07_a.png where they go up by 1 otherwise"));
+    EXPECT_THAT(warned("tens", {"s10", "s20", "s30", "s60", "s70"}), HasSubstr("from s30.png to s60.png"));
+    EXPECT_EQ(warned("even", {"s9", "s10", "s11", "s12"}), "");
+    EXPECT_EQ(warned("odd", {"s1", "s3", "s5", "s7"}), "");
+    EXPECT_EQ(warned("places", {"z_0.50", "z_1.00", "z_1.50", "z_2.00"}), "");  // millimetres, not counted
+    EXPECT_EQ(warned("letters", {"a", "b", "d"}), "");
+}
+
+TEST_F(BadImageOrOdd, SlicesOfPnmAreNamedWithWhatToDo) {
+    fs::create_directory(folder / "pgm");
+    put(folder / "pgm" / "1.pgm", "P5 1 1 255 x");
+    EXPECT_THAT(refusal(folder / "pgm"),
+                AllOf(HasSubstr("holds 1 slices as .pgm"), HasSubstr("mogrify -format png")));
+}
+
+// Of 3 x 2 pixels.
+struct OddTiff {
+    int depth = 1, samples = 1, pages = 1;
+};
+void writeTiff(const fs::path& path, const OddTiff& odd) {
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> file(TIFFOpen(path.c_str(), "w"), TIFFClose);
+    TIFF* const t = file.get();
+    for (int page = 0; page < odd.pages; ++page) {
+        TIFFSetField(t, TIFFTAG_IMAGEWIDTH, 3);
+        TIFFSetField(t, TIFFTAG_IMAGELENGTH, 2);
+        if (odd.depth > 1) TIFFSetField(t, TIFFTAG_IMAGEDEPTH, odd.depth);
+        TIFFSetField(t, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, odd.samples);
+        TIFFSetField(t, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(t, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFFSetField(t, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+        TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, 2);
+        std::string strip(static_cast<std::size_t>(6 * odd.depth * odd.samples), static_cast<char>(page + 1));
+        ASSERT_GT(TIFFWriteEncodedStrip(t, 0, strip.data(), static_cast<tmsize_t>(strip.size())), 0);
+        ASSERT_TRUE(TIFFWriteDirectory(t));
+    }
+}
+
+TEST_F(BadImageOrOdd, TiffsSayWhatTheyHoldAndWhichPageIsDamaged) {
+    const fs::path path = folder / "a.tif";
+    writeTiff(path, {.depth = 4});
+    EXPECT_THAT(refusal(path), HasSubstr("holds 4 slices in one page (ImageDepth)"));
+    writeTiff(path, {.samples = 2, .pages = 3});
+    EXPECT_THAT(refusal(path), HasSubstr("holds grey and opacity voxels of 2 numbers"));
+    writeTiff(path, {.pages = 3});
+    ASSERT_EQ(refusal(path), "");
+    std::string damaged = bytesOf(path);
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> file(TIFFOpen(path.c_str(), "r"), TIFFClose);
+    ASSERT_TRUE(TIFFSetDirectory(file.get(), 1));
+    char& inside = damaged.at(TIFFGetStrileOffset(file.get(), 0) + 3);
+    inside = static_cast<char>(~inside);
+    EXPECT_THAT(refusal(put(path, damaged)), HasSubstr("its page 2 cannot be read"));
+}
+
 // ---- numbers
 
 TEST_F(BadImageOrOdd, NumbersBeyondFloat32AreNotSaidToBeInfinite) {
