@@ -137,6 +137,24 @@ TEST_F(BadImageOrOdd, IntensityOfMetaImageIsNotAppliedAndSaid) {
                 IsEmpty());
 }
 
+// ---- NumPy
+
+TEST_F(BadImageOrOdd, NumpyHeadersAreTakenByTheWord) {
+    const auto file = [&](const std::string& dictionary) {
+        std::string header = dictionary + std::string(117 - dictionary.size(), ' ') + "\n";
+        return put(folder / "a.npy",
+                   std::string("\x93NUMPY\1\0\x76\0", 10) + header + bytes<std::int16_t>({1, 2, 3, 4}));
+    };
+    EXPECT_EQ(refusal(file("{'descr': '<i2', 'fortran_order': True, 'shape': (2, 2, 1), }")), "");
+    // json.dumps() writes so, and numpy.load() takes it.
+    EXPECT_THAT(readImage(file("{\"descr\":\"<i2\",\"fortran_order\":True,\"shape\":(2,2,1)}")).values,
+                ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(refusal(file("{'descr': '<i2', 'fortran_order': True, 'shape': (-2, 2, 1), }")),
+                HasSubstr("(-2,2,1)"));
+    EXPECT_THAT(refusal(file("{'descr': '<i2', 'fortran_order': Maybe, 'shape': (2, 2, 1), }")),
+                HasSubstr("'fortran_order': Maybe; expected True or False"));
+}
+
 // ---- pictures
 
 TEST_F(BadImageOrOdd, APictureIsWhatItBeginsWithWhateverItsName) {
