@@ -13,7 +13,8 @@ namespace isowave {
 FileDescriptor::FileDescriptor(const std::filesystem::path& path, std::string_view expected) {
     const std::string name = path.string();
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
+    if (!std::filesystem::exists(path, error))
+        throw InputError(name, error ? "cannot be looked at (" + error.message() + ")" : "no such file");
     if (std::filesystem::is_directory(path, error))
         throw InputError(name, fmt::format("is a folder; expected {}", expected));
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

@@ -135,7 +135,10 @@ Input polygonInput(const std::vector<Polygon>& polygons, const InputOptions& opt
 
 Input readInput(const std::filesystem::path& path, const InputOptions& options, const Progress& progress) {
     progress("reading", 0);
-    if (!std::filesystem::exists(path)) throw InputError(path.string(), "there is no such file");
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+        throw InputError(path.string(),
+                         error ? "cannot be looked at (" + error.message() + ")" : "there is no such file");
     if (isPyramidPath(path)) return readPyramid(readFile(path, "a pyramid of curves"), path.string());
     if (!looksLikePolygons(path)) return inputOf(readBitmap(path), options, path.string());
     const PolygonInput polygons = readPolygons(path);

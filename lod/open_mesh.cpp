@@ -313,7 +313,14 @@ Solid::State openMesh(const std::filesystem::path& path, const SolidOptions& opt
         const StageClock::Scope scope(clock, "read");
         return closed(loadMesh(path, progress, options.unit, options.maxMemory), name, options, progress);
     }();
-    return fitted(input, name, options, progress, clock);
+    try {
+        return fitted(input, name, options, progress, clock);
+    } catch (const InputError& error) {
+        // Below here nobody knows the file.
+        const std::string text = error.what(), nameless = "mesh: ";
+        if (!text.starts_with(nameless)) throw;
+        throw InputError(name, text.substr(nameless.size()));
+    }
 }
 
 Solid::State openMesh(const TriangleMesh& mesh, Space space, const SolidOptions& options,

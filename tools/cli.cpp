@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -109,6 +110,15 @@ std::string unknownOption(const Command& command, int argc, const char* const* a
                                  suggestion(name, command.options().names(), help)));
 }
 
+// "-part.stl" is taken for options.
+std::string fileWithDash(int argc, const char* const* argv) {
+    std::error_code ignored;
+    for (int i = 2; i < argc; ++i)
+        if (argv[i][0] == '-' && std::filesystem::is_regular_file(argv[i], ignored))
+            return fmt::format("; if it is a file, write ./{}", argv[i]);
+    return {};
+}
+
 void parse(const Commands& commands, CLI::App& app, int argc, const char* const* argv) {
     const bool named = argc > 1 && argv[1][0] != '-';
     const std::string help =
@@ -122,7 +132,7 @@ void parse(const Commands& commands, CLI::App& app, int argc, const char* const*
         const Command* command = named ? findCommand(commands, argv[1]) : nullptr;
         const std::string unknown = command ? unknownOption(*command, argc, argv) : std::string();
         if (!unknown.empty()) refuseOption(*command, unknown);
-        throw UsageError(oneLine(error.what()) + help);
+        throw UsageError(oneLine(error.what()) + fileWithDash(argc, argv) + help);
     }
 }
 

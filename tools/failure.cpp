@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
 
 #include "isowave/error.h"
@@ -24,6 +25,9 @@ Failure sorted(const std::exception_ptr& thrown) {
         return {1, error.what()};
     } catch (const std::bad_alloc&) {
         return {1, "memory did not suffice; take fewer voxels or free some memory"};
+    } catch (const std::filesystem::filesystem_error& error) {
+        // A name that is too long or leads to itself, most likely of an input.
+        return {1, fmt::format("{}: {}", error.path1().string(), error.code().message())};
     } catch (const std::exception& error) {
         return {1, fmt::format("failed: {}", error.what())};
     }

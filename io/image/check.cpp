@@ -157,9 +157,10 @@ void checkFinite(const std::string& file, const std::array<std::int64_t, 3>& siz
     const std::int64_t x = found.first % size[0], y = found.first / size[0] % size[1],
                        z = found.first / (size[0] * size[1]);
     throw InputError(
-        file, fmt::format("voxel ({}, {}, {}) is {}, the first of {} that are not finite; {}replace them by "
+        file, fmt::format("voxel ({}, {}, {}) is {}, the first of {} that are {}; {}replace them by "
                           "a number outside the object",
                           x, y, z, found.value, found.count,
+                          std::isnan(found.value) ? "not finite" : "not finite, or beyond float32's 3.4e38",
                           std::isnan(found.value) ? "say with --nan what NaN is taken as, or " : ""));
 }
 

@@ -1,7 +1,6 @@
 #include "io/image/header.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <charconv>
@@ -26,9 +25,17 @@ std::vector<std::int64_t> wholeNumbers(const std::string& file, const std::strin
                                        const std::string& text) {
     std::vector<std::int64_t> result;
     std::istringstream stream(text);
-    for (std::int64_t value; stream >> value;) result.push_back(value);
-    if (!stream.eof())
-        throw InputError(file, fmt::format("'{}' says '{}'; expected whole numbers", key, oneLine(text)));
+    for (std::string word; stream >> word;) {
+        std::int64_t value = 0;
+        const char *begin = word.data() + (word[0] == '+'), *end = word.data() + word.size();
+        const auto parsed = std::from_chars(begin, end, value);
+        // 99999999999999999999 is whole, and fits nothing.
+        if (parsed.ptr != end || parsed.ec != std::errc())
+            throw InputError(file,
+                             fmt::format("'{}' says '{}'; expected whole numbers{}", key, oneLine(text),
+                                         parsed.ec == std::errc::result_out_of_range ? " below 2^63" : ""));
+        result.push_back(value);
+    }
     return result;
 }
 
@@ -48,25 +55,70 @@ bool isGzip(const fs::path& path) {
     return magic[0] == 0x1F && magic[1] == 0x8B;
 }
 
-// gzread() reads plain files as they are. In pieces: what comes before a damaged place counts.
-std::string firstBytes(const fs::path& path, std::size_t count) {
-    constexpr std::size_t kPiece = 1 << 14;
+namespace {
+
+struct FileStart {
     std::string text;
-    gzFile file = gzopen(path.c_str(), "rb");
-    for (int got = 1; file && got > 0 && text.size() < count;) {
-        const std::size_t held = text.size(), wanted = std::min(kPiece, count - held);
-        text.resize(held + wanted);
-        got = gzread(file, text.data() + held, static_cast<unsigned>(wanted));
-        text.resize(held + static_cast<std::size_t>(std::max(0, got)));
+    std::string
+        complaint;  // of a gzip stream that goes no further: "it breaks off", "invalid distance too far back"
+};
+
+// All that comes before a damaged place, of one gzip stream or of several after one another.
+FileStart inflatedStart(std::ifstream& file, std::size_t count) {
+    FileStart start;
+    std::vector<char> in(1 << 14), out(1 << 14);
+    InflateStream stream;
+    bool ended = false;
+    while (start.text.size() < count) {
+        file.read(in.data(), static_cast<std::streamsize>(in.size()));
+        std::string_view left(in.data(), static_cast<std::size_t>(file.gcount()));
+        if (left.empty()) break;
+        for (bool full = false; (!left.empty() || full) && start.text.size() < count;) {
+            if (ended) stream.restart();
+            std::span<char> room(out.data(), std::min(out.size(), count - start.text.size()));
+            const std::size_t offered = room.size();
+            const InflateStream::State state = stream.inflate(left, room);
+            const std::size_t came = offered - room.size();
+            start.text.append(out.data(), came);
+            full = room.empty();
+            if (state == InflateStream::State::damaged) {
+                if (!ended || came > 0) start.complaint = "is damaged (" + stream.complaint() + ")";
+                return start;  // or padding behind the end
+            }
+            ended = state == InflateStream::State::ended;
+        }
     }
-    if (file) gzclose(file);
-    return text;
+    if (start.text.size() < count && !ended) start.complaint = "breaks off (the file is truncated)";
+    return start;
 }
 
-std::string headerFileText(const fs::path& path) {
-    constexpr std::size_t kLongestHeader = 1 << 20;
-    return firstBytes(path, kLongestHeader);
+FileStart startOf(const fs::path& path, std::size_t count) {
+    std::ifstream file(path, std::ios::binary);
+    if (isGzip(path)) return inflatedStart(file, count);
+    FileStart start;
+    start.text.resize(count);
+    file.read(start.text.data(), static_cast<std::streamsize>(count));
+    start.text.resize(static_cast<std::size_t>(file.gcount()));
+    return start;
 }
+
+}  // namespace
+
+std::string firstBytes(const fs::path& path, std::size_t count) { return startOf(path, count).text; }
+
+void checkGzipStart(const fs::path& path) {
+    constexpr std::size_t kHeader = 1024;  // the longest header of fixed length, MRC's
+    if (!isGzip(path)) return;
+    const FileStart start = startOf(path, kHeader);
+    if (!start.complaint.empty())
+        throw InputError(path.string(),
+                         fmt::format("its gzip stream {} after {} bytes; copy or download it again",
+                                     start.complaint, start.text.size()));
+    if (isowave::isGzip(std::string_view(start.text)))
+        throw InputError(path.string(), "is compressed by gzip twice; gunzip it once");
+}
+
+std::string headerFileText(const fs::path& path) { return firstBytes(path, kLongestHeader); }
 
 namespace {
 

@@ -26,7 +26,12 @@ bool isGzip(const std::filesystem::path& path);
 // The first bytes of a file, inflated if it is compressed by gzip; fewer where it ends, or is damaged, before.
 std::string firstBytes(const std::filesystem::path& path, std::size_t count);
 
+// Throws InputError where the first bytes of a gzip file cannot be inflated, or are gzip again: what reads the header would
+// say only that it is none.
+void checkGzipStart(const std::filesystem::path& path);
+
 // The first megabyte, inflated if need be: headers are a few kB.
+inline constexpr std::size_t kLongestHeader = 1 << 20;
 std::string headerFileText(const std::filesystem::path& path);
 
 std::string sizesText(const std::vector<std::int64_t>& size);

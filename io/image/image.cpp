@@ -50,6 +50,8 @@ Image readImage(const fs::path& path, const ImageReadOptions& options, const Pro
 
 std::vector<fs::path> voxelFilesOf(const fs::path& path) {
     std::vector<std::string> names;
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return {};  // a pipe would be waited for
     try {
         const FileKind kind = kindOf(path);
         if (kind == FileKind::nrrd) names = nrrdVoxelFiles(path);

@@ -14,6 +14,12 @@ namespace isowave::imageio {
 namespace fs = std::filesystem;
 namespace {
 
+FileKind pictureByContent(const std::string& text) {
+    if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::png;
+    if (isTiff(text)) return FileKind::tiff;
+    return isJpeg(text) ? FileKind::jpeg : FileKind::none;
+}
+
 FileKind kindByContent(const fs::path& path) {
     const std::string text = firstBytes(path, 1024);
     if (text.starts_with("NRRD")) return FileKind::nrrd;
@@ -24,14 +30,16 @@ FileKind kindByContent(const fs::path& path) {
     if (beginsAsMrc(text)) return FileKind::mrc;
     if (isGzip(path)) return FileKind::none;
     if (text.size() > 131 && text.compare(128, 4, "DICM") == 0) return FileKind::dicom;
-    if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::png;
-    if (isTiff(text)) return FileKind::tiff;
-    if (isJpeg(text)) return FileKind::jpeg;
+    if (const FileKind picture = pictureByContent(text); picture != FileKind::none) return picture;
     return looksLikeDicom(path) ? FileKind::dicom : FileKind::none;  // without a preamble
 }
 
 bool isHeaderFormat(FileKind kind) {
     return kind == FileKind::nifti || kind == FileKind::nrrd || kind == FileKind::meta;
+}
+
+bool isPicture(FileKind kind) {
+    return kind == FileKind::png || kind == FileKind::tiff || kind == FileKind::jpeg || kind == FileKind::bmp;
 }
 
 }  // namespace
@@ -79,6 +87,13 @@ FileKind kindByName(const fs::path& path) {
 
 FileKind kindOf(const fs::path& path) {
     const FileKind kind = kindByName(path);
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return kind;  // to look into a pipe is to wait for who writes it
+    if (isPicture(kind)) {
+        const std::string start = firstBytes(path, 16);
+        const FileKind found = pictureByContent(start);
+        return found != FileKind::none ? found : start.starts_with("BM") ? FileKind::bmp : kind;
+    }
     if (kind != FileKind::none && !isHeaderFormat(kind)) return kind;
     const FileKind found = kindByContent(path);
     const bool wins = kind == FileKind::none || isHeaderFormat(found) || found == FileKind::dicom;

@@ -27,7 +27,8 @@ std::string imageFormatNames();
 FileKind kindByName(const std::filesystem::path& path);
 
 // By the extension, or else by what the file begins with: scanners name DICOM files as they like. Where a name says NIfTI,
-// NRRD or MetaImage and the first bytes say another of these formats or DICOM, the bytes are right.
+// NRRD or MetaImage and the first bytes say another of these formats or DICOM, the bytes are right; and where it says one kind
+// of picture and they say another. What is no file, such as a pipe, is not looked into.
 FileKind kindOf(const std::filesystem::path& path);
 
 }  // namespace isowave::imageio

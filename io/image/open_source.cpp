@@ -18,6 +18,7 @@
 #include "io/image/formats/npy_volume.h"
 #include "io/image/formats/nrrd.h"
 #include "io/image/formats/vti.h"
+#include "io/image/header.h"
 #include "io/image/kind.h"
 #include "io/image/plain.h"
 #include "io/image/slices.h"
@@ -113,6 +114,7 @@ SourcePtr openFile(const fs::path& path, const ImageReadOptions& options) {
     if (fs::file_size(path) == 0) throw InputError(name, "is empty; expected an image");
     if (!std::ifstream(path)) throw InputError(name, "cannot be opened; check its permissions");
     if (options.raw) return openRaw(path, options);
+    checkGzipStart(path);
     const FileKind kind = kindOf(path);
     if (kind == FileKind::nifti) return openStored(path, readNiftiHeader(path), options);
     if (kind == FileKind::mgh) return openStored(path, readMghHeader(path), options);
@@ -176,7 +178,10 @@ SourcePtr openSource(const fs::path& path, const ImageReadOptions& options) {
     const std::string name = path.string();
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw InputError(name, "no such file or folder");
+    if (!fs::exists(status))
+        throw InputError(name, status.type() == fs::file_type::none
+                                   ? "cannot be looked at (" + error.message() + ")"
+                                   : "no such file or folder");
     const bool folder = fs::is_directory(status);
     if (!folder && !fs::is_regular_file(status)) throw InputError(name, "is neither a file nor a folder");
     if (folder && options.raw)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <map>
 
 #include "base/read_file.h"
 #include "io/image/check.h"
@@ -31,7 +32,7 @@ struct Slice {
 };
 
 [[noreturn]] void throwColours(const fs::path& path, int channels) {
-    throwNotScalar(path, channels == 3 ? "RGB" : channels == 4 ? "RGBA" : "scalar", channels);
+    throwNotScalar(path, channels == 3 ? "RGB" : channels == 4 ? "RGBA" : "grey and opacity", channels);
 }
 
 Header headerOf(const Picture& picture) {
@@ -136,6 +137,50 @@ void assumeHeight(Header& header) {
 
 }  // namespace
 
+// The numbers by which slices follow each other: the last one in the names that is not the same in all of them, as "IM0012_a.png"
+// has 12. Nothing where a name has none.
+std::vector<std::int64_t> numbersOf(const std::vector<fs::path>& slices) {
+    std::vector<std::vector<std::int64_t>> runs;
+    for (const fs::path& slice : slices) {
+        std::vector<std::int64_t>& found = runs.emplace_back();
+        const std::string name = slice.stem().string();
+        for (std::size_t at = 0; (at = name.find_first_of("0123456789", at)) != std::string::npos;) {
+            const std::size_t end = std::min(name.find_first_not_of("0123456789", at), name.size());
+            if (end - at > 15) return {};
+            found.push_back(std::stoll(name.substr(at, end - at)));
+            at = end;
+        }
+        if (found.size() != runs.front().size()) return {};
+    }
+    for (std::size_t k = runs.front().size(); k-- > 0;) {
+        const bool same =
+            std::all_of(runs.begin(), runs.end(), [&](const auto& r) { return r[k] == runs[0][k]; });
+        if (same) continue;
+        std::vector<std::int64_t> numbers;
+        for (const auto& run : runs) numbers.push_back(run[k]);
+        return numbers;
+    }
+    return {};
+}
+
+// Slices that are numbered in even steps but for some that are not there are stacked as if nothing were missing.
+std::optional<std::string> gapAmong(const std::vector<fs::path>& slices) {
+    const std::vector<std::int64_t> numbers = numbersOf(slices);
+    std::map<std::int64_t, std::size_t> steps;  // how often
+    for (std::size_t k = 1; k < numbers.size(); ++k) ++steps[numbers[k] - numbers[k - 1]];
+    if (steps.size() < 2 || steps.begin()->first < 1) return std::nullopt;
+    const auto usual = std::max_element(steps.begin(), steps.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    // Names that say something else than an order have many steps.
+    if (2 * usual->second < numbers.size() || steps.begin()->first < usual->first) return std::nullopt;
+    std::size_t k = 1;
+    while (numbers[k] - numbers[k - 1] == usual->first) ++k;
+    return fmt::format(
+        "numbers jump from {} to {} where they go up by {} otherwise: slices may be missing, and the "
+        "others are stacked as if they were not",
+        slices[k - 1].filename().string(), slices[k].filename().string(), usual->first);
+}
+
 SourcePtr openPictureFile(const fs::path& path, const ImageReadOptions& options) {
     if (kindOf(path) != FileKind::tiff) {
         const Header flat = openSlice(path, options).header;
@@ -162,6 +207,7 @@ SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& sl
     source->header.format = first.format + " slices";
     source->header.size[2] = static_cast<std::int64_t>(slices.size());
     if (first.format != "TIFF" || !first.header.hasZSpacing) assumeHeight(source->header);
+    if (const auto gap = gapAmong(slices)) source->header.warnings.push_back(*gap);
     if (first.format == "JPEG")
         source->header.warnings.emplace_back(
             "JPEG is lossy: edges have ripples of some grey values; take the slices as they were before, if "

@@ -63,6 +63,8 @@ void checkPoints(const std::string& name, const std::vector<Point>& points, bool
         largest = std::max({largest, high, -low});
         extent = std::max(extent, high - low);
     }
+    if (!(extent > 0) && !(largest > 0))
+        throw InputError(name, "all its points are (0, 0, 0); expected a solid with an extent");
     // Numbers in [2^e, 2^(e+1)) lie 2^(e-23) apart in float32, 2^(e-52) in float64.
     const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-300)) - (float32 ? 23 : 52));
     if (extent < kFewestSteps * step)

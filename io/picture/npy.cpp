@@ -16,12 +16,22 @@ constexpr char kNativeOrder = std::endian::native == std::endian::big ? '>' : '<
 // By ValueType.
 constexpr std::string_view kKinds[] = {"i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"};
 
+// Behind 'key' or "key" and the colon: Python takes either.
+std::optional<std::size_t> behindKey(std::string_view header, const std::string& key) {
+    for (const char quote : {'\'', '"'}) {
+        const std::size_t found = header.find(quote + key + quote);
+        if (found == std::string::npos) continue;
+        const std::size_t colon = header.find_first_not_of(' ', found + key.size() + 2);
+        if (colon != std::string::npos && header[colon] == ':') return colon + 1;
+    }
+    return std::nullopt;
+}
+
 // The text between `'key': ` and the next comma outside brackets in the header's Python dictionary.
 std::string headerValue(std::string_view header, const std::string& key, const std::string& name) {
-    const std::size_t found = header.find("'" + key + "':");
-    if (found == std::string::npos)
-        throw InputError(name, "its header has no '" + key + "'; it is not a NumPy array");
-    std::size_t at = found + key.size() + 3;
+    const auto begin = behindKey(header, key);
+    if (!begin) throw InputError(name, "its header has no '" + key + "'; it is not a NumPy array");
+    std::size_t at = *begin;
     std::string value;
     for (int depth = 0; at < header.size(); ++at) {
         const char c = header[at];
@@ -36,6 +46,8 @@ std::string headerValue(std::string_view header, const std::string& key, const s
 std::vector<std::size_t> shapeOf(const std::string& text, const std::string& name) {
     std::vector<std::size_t> shape;
     std::string digits;
+    if (text.find_first_not_of("(),L0123456789") != std::string::npos)
+        throw InputError(name, "has the shape " + text + "; expected whole numbers from 0 on");
     for (const char c : text) {
         if (c >= '0' && c <= '9') {
             digits += c;
@@ -51,8 +63,8 @@ std::vector<std::size_t> shapeOf(const std::string& text, const std::string& nam
 
 // '<f8', '>i2', '|u1'
 std::optional<NpyHeader> elementsOf(const std::string& description) {
-    if (description.size() != 5 || description.front() != '\'' || description.back() != '\'')
-        return std::nullopt;
+    const bool quoted = description.size() == 5 && description.front() == description.back();
+    if (!quoted || (description.front() != '\'' && description.front() != '"')) return std::nullopt;
     NpyHeader header;
     const std::string kind = description.substr(2, 2);
     const auto found = std::find(std::begin(kKinds), std::end(kKinds), kind);
@@ -117,7 +129,10 @@ NpyHeader readNpyHeader(std::string_view bytes, const std::string& name) {
             "holds elements of type " + description +
                 "; booleans, integers and floats of 2, 4 or 8 bytes are read: save it with .astype(float)");
     NpyHeader header = *elements;
-    header.fortran = headerValue(text, "fortran_order", name) == "True";
+    const std::string fortran = headerValue(text, "fortran_order", name);
+    if (fortran != "True" && fortran != "False")
+        throw InputError(name, "its header says 'fortran_order': " + fortran + "; expected True or False");
+    header.fortran = fortran == "True";
     header.shapeText = headerValue(text, "shape", name);
     header.shape = shapeOf(header.shapeText, name);
     header.data = start + length;

@@ -215,6 +215,7 @@ class TiffFile::Reader {
         page.directory = TIFFCurrentDirOffset(tiff_.get());
         page.width = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));
         page.height = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGELENGTH));
+        page.depth = static_cast<std::int64_t>(tag<std::uint32_t>(TIFFTAG_IMAGEDEPTH, 1));
         page.bits = tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE);
         page.samples = tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
         page.photometric = tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);

@@ -27,6 +27,7 @@ Picture readTiff(std::string_view bytes, const std::string& name);
 struct TiffPage {
     std::int64_t width = 0, height = 0;
     int bits = 0, samples = 1, photometric = 0;
+    std::int64_t depth = 1;           // slices in it, by a tag of SGI that libtiff knows
     std::optional<ValueType> type;    // of the samples as a Picture has them; none where none fits
     bool isThumbnail = false;         // or a mask
     std::array<double, 2> perUnit{};  // pixels along x and y in a unit; 0: not said

@@ -25,7 +25,9 @@ Picture readByName(const std::filesystem::path& path, const std::string& name) {
     if (extension == ".asc") return readAsc(readFile(path, "a grid of numbers"), name);
     if (extension != ".png" && extension != ".tif" && extension != ".tiff")
         throw InputError(name, "is of no kind that holds a grid; they are .npy .asc .png .tif");
-    if (std::filesystem::is_directory(path)) throw InputError(name, "is a folder; expected a picture");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError(name, "is a folder; expected a picture");
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(name, "cannot be opened; is the name right?");
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
 #include <limits>
 
 #include "tests/tools/inputs.h"
@@ -521,6 +524,27 @@ const std::vector<BadInput>& rows() {
              return lod(f, "slices", {"--iso", "0", "--size", "8x8x8", "--type", "int16"});
          },
          {"slices", "folder", "size"}},
+        {"NameThatIsTooLong",
+         3,
+         [](const Folder& f) {
+             return Arguments{"view", (f / (std::string(300, 'y') + ".ply")).string(), "-o",
+                              (f / "a.html").string()};
+         },
+         {"yyy.ply", "cannot be looked at", "too long"}},
+        {"MeshInTinyUnits",
+         3,
+         [](const Folder& f) {
+             writeStl(f / "a.stl", torus(1e-8, 4e-9));
+             return lod(f, "a.stl", {"--voxels", "16"});
+         },
+         {"a.stl", "smaller unit"}},
+        {"ListThatIsNoText",
+         3,
+         [](const Folder& f) {
+             std::ofstream(f / "list") << std::string("a\0b\n", 4);
+             return Arguments{"lod", "--list", (f / "list").string(), "-o", (f / "out").string()};
+         },
+         {"list", "is no text", "one path a line"}},
         {"HeaderlessTooShort",
          3,
          [](const Folder& f) {
@@ -569,6 +593,34 @@ TEST(BadInputTable, IsVariedFromInputsThatAreFine) {
     EXPECT_EQ(isowave(lod(folder, "a.ply", {"--voxels", "24"})).exitCode, 0);
     writeOff(folder / "a.off", torus(10, 4));
     EXPECT_EQ(isowave(lod(folder, "a.off", {"--voxels", "24"})).exitCode, 0);
+}
+
+// No rows of the table, which compares what the folder holds: to read a pipe is to wait.
+TEST(InfoOfWhatIsNoFile, SaysSoAtOnce) {
+    const Folder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe.nii").c_str(), 0600), 0);
+    fs::create_symlink("loop.nii", folder / "loop.nii");
+    const Result pipe = isowave({"info", (folder / "pipe.nii").string()}),
+                 loop = isowave({"info", (folder / "loop.nii").string()});
+    EXPECT_EQ(pipe.exitCode, 3);
+    EXPECT_THAT(pipe.err, ::testing::HasSubstr("pipe.nii: is neither a file nor a folder"));
+    EXPECT_EQ(loop.exitCode, 3);
+    EXPECT_THAT(loop.err, ::testing::HasSubstr("loop.nii: cannot be looked at"));
+}
+
+// `info` sends those to other commands who ask about a picture, not those whose volume is damaged.
+TEST(InfoOfAnArray, SpeaksOfPicturesWhereItIsFlat) {
+    const Folder folder;
+    const auto write = [&](const std::string& shape, std::size_t bytes) {
+        std::string header = "{'descr': '|u1', 'fortran_order': False, 'shape': (" + shape + "), }";
+        header.resize(117, ' ');
+        std::ofstream(folder / "a.npy", std::ios::binary)
+            << std::string("\x93NUMPY\1\0\x76\0", 10) + header + "\n" + std::string(bytes, 'x');
+        return isowave({"info", (folder / "a.npy").string()}).err;
+    };
+    EXPECT_THAT(write("4, 3", 12), ::testing::HasSubstr("isowave curves draws the outline"));
+    EXPECT_THAT(write("4, 3, 2", 20), ::testing::Not(::testing::HasSubstr("isowave curves")));
+    EXPECT_THAT(write("4, 3, 2, 2", 48), ::testing::Not(::testing::HasSubstr("isowave curves")));
 }
 
 // What fits the limit is read: a headerless image takes its own size, not that of the slab it is read by.

@@ -108,13 +108,16 @@ CurvePyramidInfo curvesInfo(const fs::path& path, Console& console) {
     return info;
 }
 
-// What other commands read is no mystery.
-std::string adviceFor(const fs::path& path) {
+// What other commands read is no mystery. complaint: why it is none of what this command reads.
+std::string adviceFor(const fs::path& path, const std::string& complaint) {
     const std::string extension = toLower(path.extension().string());
     const auto isOneOf = [&](std::initializer_list<const char*> all) {
-        return fs::is_regular_file(path) && std::find(all.begin(), all.end(), extension) != all.end();
+        std::error_code ignored;
+        return fs::is_regular_file(path, ignored) &&
+               std::find(all.begin(), all.end(), extension) != all.end();
     };
-    if (isOneOf({".png", ".bmp", ".pgm", ".pbm", ".ppm", ".npy", ".asc"}))
+    const bool flat = complaint.find("is a 2D image") != std::string::npos;
+    if (isOneOf({".pgm", ".pbm", ".ppm", ".asc"}) || (flat && isOneOf({".png", ".bmp", ".npy"})))
         return "; isowave curves draws the outline of a picture, isowave relief takes its values as heights";
     if (isOneOf({".geojson", ".json", ".topojson", ".svg", ".txt"}))
         return "; isowave curves makes levels of polygons, isowave curve-levels of lines";
@@ -141,7 +144,7 @@ class Info : public Command {
         try {
             tellOf(arguments[0], console);
         } catch (const InputError& error) {
-            throw InputError(error.what() + adviceFor(arguments[0]));
+            throw InputError(error.what() + adviceFor(arguments[0], error.what()));
         }
         return 0;
     }

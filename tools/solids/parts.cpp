@@ -18,9 +18,11 @@ namespace isowave::tools {
 namespace fs = std::filesystem;
 namespace {
 
-std::vector<fs::path> linesOf(std::istream& in) {
+std::vector<fs::path> linesOf(std::istream& in, const std::string& name) {
     std::vector<fs::path> paths;
     for (std::string line; std::getline(in, line);) {
+        if (line.find('\0') != std::string::npos)
+            throw InputError(name, "is no text; --list takes a text file, one path a line");
         if (!line.empty() && line.back() == '\r') line.pop_back();
         if (!line.empty()) paths.emplace_back(line);
     }
@@ -28,11 +30,12 @@ std::vector<fs::path> linesOf(std::istream& in) {
 }
 
 std::vector<fs::path> listed(const fs::path& list) {
-    if (list == "-") return linesOf(std::cin);
+    if (list == "-") return linesOf(std::cin, "-");
     std::ifstream file(list);
-    if (!file || fs::is_directory(list))
+    std::error_code ignored;
+    if (!file || fs::is_directory(list, ignored))
         throw InputError(list.string(), "cannot be read; --list takes a text file, one path a line");
-    return linesOf(file);
+    return linesOf(file, list.string());
 }
 
 // The same for all names of one file or folder, be it there or not.

@@ -324,7 +324,10 @@ view::PageOptions pageOptionsOf(const InputReport& input, const std::string& nam
 
 std::unique_ptr<view::Page> pageOf(const std::vector<fs::path>& inputs, Console& console) {
     const fs::path& first = inputs.front();
-    if (!fs::exists(first)) throw InputError(first.string(), "no such file or folder");
+    std::error_code error;
+    if (!fs::exists(first, error))
+        throw InputError(first.string(),
+                         error ? "cannot be looked at (" + error.message() + ")" : "no such file or folder");
     const std::string title = withoutGz(first).stem().string();
     if (inputs.size() == 1 && fs::is_directory(first)) return pageOfFolder(first, console);
     if (isMeshPath(first)) {

@@ -7,6 +7,7 @@
 #include "io/image/check.h"
 #include "io/image/dicom/sources.h"
 #include "io/image/dicom/stack.h"
+#include "io/image/kind.h"
 #include "isowave/error.h"
 
 namespace isowave::imageio {
@@ -23,11 +24,15 @@ std::string kindOfObject(const DicomFile& file) {
 // Files that were left out, in one remark.
 class LeftOut {
   public:
-    void add(const fs::path& file, const std::string& why) {
+    void add(const fs::path& file, const std::string& why, bool damaged) {
         constexpr int kMost = 5;
         if (++count_ <= kMost)
             text_ += fmt::format("{}{} ({})", count_ == 1 ? "" : ", ", file.filename().string(), why);
+        if ((damaged || kindByName(file) == FileKind::dicom) && damaged_.empty())
+            damaged_ = fmt::format("{} ({})", file.filename().string(), why);
     }
+    // The first file that is damaged, or called a DICOM file and none.
+    const std::string& damaged() const { return damaged_; }
     void remarkIn(std::vector<std::string>& remarks) const {
         if (count_ == 0) return;
         remarks.push_back(count_ <= 5 ? "left out: " + text_
@@ -37,7 +42,7 @@ class LeftOut {
 
   private:
     int count_ = 0;
-    std::string text_;
+    std::string text_, damaged_;
 };
 
 void requireUsable(const DicomStack& stack) {
@@ -80,19 +85,25 @@ SourcePtr openDicomFolder(const fs::path& folder, const std::vector<fs::path>& f
     for (const fs::path& path : files) {
         if (fs::file_size(path) == 0) throw InputError(path.string(), "is empty; expected a DICOM slice");
         if (!looksLikeDicom(path)) {
-            leftOut.add(path, "not DICOM");
+            leftOut.add(path, "not DICOM", false);
             continue;
         }
         DicomFile file = readDicomFile(path);
         const std::string kind = kindOfObject(file), problem = file.problem;
         std::vector<DicomFrame> its = framesOf(std::move(file));
-        if (its.empty()) leftOut.add(path, problem.empty() ? kind : problem);
+        if (its.empty()) leftOut.add(path, problem.empty() ? kind : problem, !problem.empty());
         frames.insert(frames.end(), std::make_move_iterator(its.begin()), std::make_move_iterator(its.end()));
     }
     if (frames.empty()) throw InputError(folder.string(), "holds no DICOM image; " + leftOut.text());
     std::vector<std::string> remarks;
     leftOut.remarkIn(remarks);
-    return openStack(folder.string(), std::move(frames), options, std::move(remarks));
+    try {
+        return openStack(folder.string(), std::move(frames), options, std::move(remarks));
+    } catch (const InputError& error) {
+        // A slice that seems to be missing may be the one that could not be read.
+        if (leftOut.damaged().empty()) throw;
+        throw InputError(fmt::format("{}; left out was {}", error.what(), leftOut.damaged()));
+    }
 }
 
 SourcePtr openDicomFile(const fs::path& path, const ImageReadOptions& options) {

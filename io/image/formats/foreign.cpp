@@ -127,7 +127,8 @@ constexpr Foreign kForeign[] = {
     {" .zst ", "compressed", "unpack it first: unzstd {0}"},
     {" .raw .bin .dat .vol .img .data ", "headerless voxels, or a format that is not known",
      "if they are voxels as they are, give --size, --type and --spacing"},
-    {" .gif .webp .jp2 .j2k ", "a picture", "give a volume, such as a folder of PNG or TIFF slices"},
+    {" .gif .webp .jp2 .j2k .pgm .ppm .pbm .pnm ", "a picture",
+     "give a volume, such as a folder of PNG or TIFF slices"},
 };
 
 const Foreign* foreignOf(const std::string& extension) {
@@ -161,7 +162,7 @@ std::optional<std::string> folderText(const fs::path& folder) {
          entry.increment(ignored)) {
         ++count[toLower(entry->path().extension().string())];
     }
-    for (const char* extension : {".gif", ".webp", ".jp2", ".j2k"})
+    for (const char* extension : {".gif", ".webp", ".jp2", ".j2k", ".pgm", ".ppm", ".pbm", ".pnm"})
         if (const std::size_t n = count[extension]; n > 0)
             return fmt::format(
                 "holds {} slices as {}, which are not read; convert them: mogrify -format png {}/*{}", n,

@@ -154,6 +154,17 @@ void placeMeta(const MetaText& text, std::size_t n, Header& header) {
     header.origin = origin;
 }
 
+// What the format calls intensity is slope * value + offset.
+void remarkIntensity(const MetaText& text, Header& header) {
+    const auto differs = [&](const char* key, double usual) {
+        const std::vector<double> found = plainNumbers(text.get(key));
+        return found.size() == 1 && found[0] != usual;
+    };
+    if (differs("ElementToIntensityFunctionSlope", 1) || differs("ElementToIntensityFunctionOffset", 0))
+        header.warnings.push_back(
+            "'ElementToIntensityFunctionSlope' and 'Offset' are not applied; values are as stored");
+}
+
 // ---- voxels
 
 bool isLocal(const MetaText& text) { return toLower(text.get("ElementDataFile")) == "local"; }
@@ -266,6 +277,7 @@ StoredVolume readMetaHeader(const fs::path& path) {
     const auto channels = wholeNumbers(name, "ElementNumberOfChannels", text.get("ElementNumberOfChannels"));
     if (!channels.empty() && channels[0] != 1)
         throwNotScalar(path, channels[0] == 3 ? "RGB" : channels[0] == 4 ? "RGBA" : "vector", channels[0]);
+    remarkIntensity(text, header);
     checkMetaNumbers(name, text, size.size());
     placeMeta(text, size.size(), header);
     for (std::size_t a = 3; a < size.size(); ++a) volume.voxels.outer *= size[a];

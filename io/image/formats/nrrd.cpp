@@ -74,6 +74,10 @@ NrrdText nrrdText(const fs::path& path) {
         else
             takeLine(line, result);
     }
+    if (!result.complete && text.size() >= kLongestHeader)
+        throw InputError(path.string(),
+                         fmt::format("its header goes on beyond {} bytes; expected a blank line that ends it",
+                                     kLongestHeader));
     result.end = static_cast<std::int64_t>(at == std::string::npos ? text.size() : at + 1);
     return result;
 }
@@ -181,9 +185,10 @@ void checkDirection(const std::string& file, const std::string& text, const std:
     const bool infinite =
         std::any_of(vector.begin(), vector.end(), [](double v) { return !std::isfinite(v); });
     if (zero || infinite)
-        throw InputError(file, fmt::format("'space directions' says {}, a spacing of {}; expected vectors of "
-                                           "positive length",
-                                           oneLine(text), zero ? "zero" : "infinity"));
+        throw InputError(file,
+                         fmt::format("'space directions' says {}, {}; expected vectors of "
+                                     "positive length",
+                                     oneLine(text), zero ? "a spacing of zero" : "which are not all finite"));
 }
 
 // ---- spaces
@@ -274,6 +279,10 @@ void chooseAxes(const fs::path& path, NrrdAxes& axes, bool directions) {
     std::vector<std::size_t> spatial;
     for (std::size_t a = 0; a < axes.size.size(); ++a)
         if (isSpatial(axes, a, directions)) spatial.push_back(a);
+    if (spatial.size() < 3 && directions && axes.size.size() > 2 && spatial.size() < axes.size.size() - 1)
+        throw InputError(path.string(),
+                         fmt::format("'space directions' gives {} of its {} axes a direction; expected three",
+                                     spatial.size(), axes.size.size()));
     if (spatial.size() < 3) {
         std::int64_t x = axes.size[0], y = axes.size.size() > 1 ? axes.size[1] : 1;
         if (!spatial.empty()) x = axes.size[spatial[0]], y = spatial.size() > 1 ? axes.size[spatial[1]] : 1;
@@ -378,6 +387,14 @@ void placeBySpace(const std::string& file, const NrrdText& text, const NrrdAxes&
     place(header, step, product(spaceOrigin(file, text), factor));
 }
 
+// A field with one number an axis, nan where it is not known.
+void requireNumberAnAxis(const std::string& file, const NrrdText& text, const std::string& key,
+                         const char* field, std::size_t axes) {
+    if (text.has(key) && numbers(text.get(key)).size() != axes)
+        throw InputError(file, fmt::format("'{}' says '{}'; expected {} numbers, one an axis", field,
+                                           oneLine(text.get(key)), axes));
+}
+
 // Number `axis` of a field with one number an axis; NaN where it does not say.
 double ofAxis(const NrrdText& text, const std::string& key, std::size_t axis) {
     const std::vector<double> values = numbers(text.get(key));
@@ -386,7 +403,10 @@ double ofAxis(const NrrdText& text, const std::string& key, std::size_t axis) {
 
 // Without a space: 'spacings', or 'axis mins' and 'axis maxs', which give the places of samples or, of axes centred in
 // cells (the default), of the cells' borders.
-void placeByAxes(const NrrdText& text, const NrrdAxes& axes, Header& header) {
+void placeByAxes(const std::string& file, const NrrdText& text, const NrrdAxes& axes, Header& header) {
+    for (const auto& [key, field] :
+         {std::pair{"spacings", "spacings"}, {"axismins", "axis mins"}, {"axismaxs", "axis maxs"}})
+        requireNumberAnAxis(file, text, key, field, axes.size.size());
     const Vec3 unit = unitsOf(text, "units", "units", axes.first, header);
     const std::vector<std::string> centerings = words(toLower(text.get("centerings")));
     std::array<Vec3, 3> step{};
@@ -438,11 +458,16 @@ Encoding encodingOf(const std::string& file, const std::string& name) {
 bool isBigEndian(const std::string& file, const NrrdText& text, Encoding encoding, ValueType type) {
     const std::string endian = toLower(text.get("endian"));
     const bool matters = encoding != Encoding::text && sizeOf(type) > 1;
+    if (matters && endian.empty())
+        throw InputError(
+            file, fmt::format("its header has no 'endian', which {} voxels need; expected little or big",
+                              nameOf(type)));
     if (matters && endian != "little" && endian != "big")
-        throw InputError(file, fmt::format("'endian' says '{}', which {} voxels need; expected little or big",
-                                           oneLine(endian), nameOf(type)));
+        throw InputError(file, fmt::format("'endian' says '{}'; expected little or big", oneLine(endian)));
     return endian == "big";
 }
+
+constexpr std::int64_t kMostSkipped = std::int64_t(1) << 62;
 
 // Lines are skipped before decoding, bytes after it. A byte skip of -1: raw voxels are what the file ends with.
 VoxelPiece pieceOf(const fs::path& file, std::int64_t start, const NrrdText& text, Encoding encoding,
@@ -450,8 +475,14 @@ VoxelPiece pieceOf(const fs::path& file, std::int64_t start, const NrrdText& tex
     const std::string name = file.string();
     const std::int64_t lines = numberOr(name, text, "lineskip", 0),
                        bytes = numberOr(name, text, "byteskip", 0);
+    const auto held = static_cast<std::int64_t>(fs::file_size(file));
+    if (lines < 0 || lines > held)
+        throw InputError(name, fmt::format("'line skip' says {}; expected 0 to {}", lines, held));
+    // Bytes are those behind decoding: a deflated file may have more than it takes.
+    if (bytes < -1 || (bytes > held && encoding != Encoding::deflated) || bytes > kMostSkipped)
+        throw InputError(name, fmt::format("'byte skip' says {}, of a file of {} bytes; expected -1 or more",
+                                           bytes, held));
     if (encoding == Encoding::raw && bytes < 0) {
-        const auto held = static_cast<std::int64_t>(fs::file_size(file));
         return {file, std::max<std::int64_t>(0, held - each), 0};
     }
     const std::int64_t begin = skipped(file, start, lines, 0);
@@ -531,7 +562,7 @@ StoredVolume readNrrdHeader(const fs::path& path) {
         if (a > axes.first + 2) volume.voxels.outer *= axes.size[a];
     }
     if (axes.direction.empty())
-        placeByAxes(text, axes, header);
+        placeByAxes(name, text, axes, header);
     else
         placeBySpace(name, text, axes, header);
     const std::int64_t needed = byteCount(name, axes.size, static_cast<std::int64_t>(sizeOf(header.type)));

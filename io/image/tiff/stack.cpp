@@ -47,12 +47,19 @@ void requireAlike(const std::string& file, const std::vector<TiffPage>& pages,
 
 void requireNumbers(const std::string& file, const TiffPage& page) {
     if (page.samples > 1) {
-        const char* kind = page.photometric != kRgb ? "vector" : page.samples == 3 ? "RGB" : "RGBA";
+        const char* kind = page.photometric == kRgb ? (page.samples == 3 ? "RGB" : "RGBA")
+                           : page.samples == 2      ? "grey and opacity"
+                                                    : "vector";
         throw InputError(file,
                          fmt::format("holds {} voxels of {} numbers; expected one number a voxel; convert it "
                                      "to grey",
                                      kind, page.samples));
     }
+    if (page.depth > 1)
+        throw InputError(
+            file, fmt::format("holds {} slices in one page (ImageDepth), which are not read; save them as "
+                              "pages, or as OME-TIFF",
+                              page.depth));
     if (!page.type)
         throw InputError(
             file, fmt::format("holds samples of {} bits; expected integers of 1, 2, 4, 8, 16, 32 or 64 "
@@ -134,7 +141,7 @@ class TiffStack : public VoxelSource {
         auto* to = static_cast<std::byte*>(out);
         for (std::int64_t z = z0; z < z1; ++z, to += size) {
             const auto page = static_cast<std::size_t>(pages[static_cast<std::size_t>(z)]);
-            const Picture picture = file_.picture(page, TiffFile::Samples::stored);
+            const Picture picture = pictureOf(page);
             if (picture.samples.size() != size || picture.type != header.type)
                 throw InputError(path_.string(),
                                  fmt::format("its page {} is not what its tags said", page + 1));
@@ -143,6 +150,18 @@ class TiffStack : public VoxelSource {
     }
 
   private:
+    // What libtiff says does not say where.
+    Picture pictureOf(std::size_t page) {
+        try {
+            return file_.picture(page, TiffFile::Samples::stored);
+        } catch (const InputError& error) {
+            const std::string name = path_.string() + ": ", text = error.what();
+            throw InputError(path_.string(),
+                             fmt::format("its page {} {}", page + 1,
+                                         text.starts_with(name) ? text.substr(name.size()) : text));
+        }
+    }
+
     fs::path path_;
     std::shared_ptr<const FileBytes> bytes_;
     TiffFile file_;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include "base/text.h"
@@ -205,6 +206,21 @@ class ModelReader {
         if (known == std::end(kThreeMfUnits) && !unit.empty())
             fail("its unit is '" + shown(unit) + "', which 3MF has not");
         millimetres = unit.empty() ? 1 : known->millimetres;
+        requireKnown(attributes);
+    }
+
+    // Who does not know an extension that a model requires must not read it: its triangles are not all of the shape.
+    void requireKnown(Attributes attributes) const {
+        std::istringstream required(text(attributes, "requiredextensions"));
+        for (std::string prefix; required >> prefix;) {
+            const std::string space = text(attributes, ("xmlns:" + prefix).c_str());
+            const bool known = space.find("/production/") != std::string::npos ||
+                               space.find("/material/") != std::string::npos;
+            if (!known)
+                fail(fmt::format(
+                    "it needs 3MF's extension '{}', which is not read; export it without, as triangles",
+                    (space.empty() ? prefix : space).substr(0, 100)));
+        }
     }
 
     void startObject(Attributes attributes) {
@@ -227,6 +243,8 @@ class ModelReader {
             if (find(attributes, "pid") || find(attributes, "p1")) drop(Dropped::materials);
         } else if (element == "component" && object_) {
             object_->components.push_back(itemOf(attributes));
+        } else if (element == "beam" || element == "slicestack") {
+            fail(fmt::format("holds a '{}', which is not read; export it as triangles", element));
         } else if (element == "object") {
             startObject(attributes);
         } else if (element == "item") {

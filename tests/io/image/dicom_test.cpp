@@ -121,6 +121,23 @@ TEST_F(Dicom, SaysThatSlicesAreMissing) {
                 AllOf(HasSubstr("IM6.dcm and IM7.dcm are 4.5 mm apart"), HasSubstr("slices are missing")));
 }
 
+// It was said to be missing, and where it lies was not.
+TEST_F(Dicom, NamesTheSliceThatCouldNotBeReadWhereOneSeemsToBeMissing) {
+    const std::vector<double> heights{0, 1, 2, 3, 4, 5, 6};
+    series(heights);
+    const std::string whole = test::bytesOf(folder / name(3));
+    test::put(folder / name(3), whole.substr(0, 300));
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("IM2.dcm and IM4.dcm are 2 mm apart"),
+                                 HasSubstr("left out was " + name(3) + " (")));
+    test::put(folder / name(3), "hello, I am text");
+    EXPECT_THAT(refusal(), HasSubstr("left out was " + name(3) + " (not DICOM)"));
+    test::put(folder / name(3), whole);
+    test::put(folder / "README.txt", "hello, I am text");
+    fs::remove(folder / name(4));
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("IM3.dcm and IM5.dcm are 2 mm apart"),
+                                 testing::Not(HasSubstr("left out was"))));
+}
+
 // f(h) = 1000 h / 1.2 is linear in the height, so that interpolation is exact.
 TEST_F(Dicom, ResamplesUnevenStepsWhenAsked) {
     const std::vector<double> units{0, 1, 2, 3, 5, 7};  // of 1.2 mm

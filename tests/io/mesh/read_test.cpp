@@ -329,6 +329,8 @@ TEST(ReadMesh, RefusesCoordinatesBeyondReason) {
     mesh.points[7][2] = 3e30;
     EXPECT_REFUSED("a.stl", binaryStl(mesh), "beyond 1e15");
     EXPECT_REFUSED("a.ply", binaryPly(mesh), "beyond 1e15");
+    for (auto& point : mesh.points) point = {};
+    EXPECT_REFUSED("a.stl", binaryStl(mesh), "all its points are (0, 0, 0)");
     // 20 across at 1e6: float32 has steps of 1/16 there, 320 of them; at 1e5, 2560.
     EXPECT_REFUSED("a.stl", binaryStl(shapes::sphere(10, 2, {1e6, 0, 0})), "fewer than 1024 steps are left");
     EXPECT_NO_THROW(readBytes("a.stl", binaryStl(shapes::sphere(10, 2, {1e5, 0, 0}))));

@@ -201,6 +201,32 @@ TEST(ThreeMf, TheRelationSaysWhereTheModelIs) {
                 HasSubstr("has no part '3D/part.model'"));
 }
 
+// They were left out without a word, and the rest was taken for the shape.
+TEST(ThreeMf, WhatIsNoTriangleIsRefusedWhereItIsPartOfTheShape) {
+    const auto refused = [](const std::string& mesh, const std::string& attributes = "") {
+        const std::string object = "<object id=\"1\">" + mesh + "</object>";
+        return refusal(
+            [&] { readThreeMf(threeMf(model(object, "<item objectid=\"1\"/>", attributes)), "file"); });
+    };
+    const auto needs = [&](const std::string& prefix, const std::string& space) {
+        return refused(kTetrahedron,
+                       "requiredextensions=\"" + prefix + "\" xmlns:" + prefix + "=\"" + space + "\"");
+    };
+    const std::string schemas = "http://schemas.microsoft.com/3dmanufacturing/";
+    EXPECT_THAT(
+        refused(
+            "<b:beamlattice xmlns:b=\"b\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice>"),
+        HasSubstr("holds a 'beam', which is not read"));
+    EXPECT_THAT(needs("b", schemas + "beamlattice/2017/02"),
+                HasSubstr("beamlattice/2017/02', which is not read"));
+    EXPECT_THAT(needs("v", "http://schemas.3mf.io/3dmanufacturing/volumetric/2022/01"),
+                HasSubstr("needs 3MF's extension"));
+    EXPECT_THAT(refused(kTetrahedron, "requiredextensions=\"x\""), HasSubstr("needs 3MF's extension 'x'"));
+    EXPECT_EQ(needs("m", schemas + "material/2015/02"), "");
+    EXPECT_EQ(needs("p", schemas + "production/2015/06"),
+              "");  // paths to other parts are refused by themselves
+}
+
 TEST(ThreeMf, DamageIsRefused) {
     const auto refused = [](const std::string& text) {
         return refusal([&] { readThreeMf(threeMf(text), "file"); });
