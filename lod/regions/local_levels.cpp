@@ -110,25 +110,29 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
     collapseByQuadrics(mesh, options, nullptr, progress);
 }
 
-std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& progress) const {
+std::int64_t LocalLevels::pointsOf(std::size_t stage, const BSplineField& field,
+                                   const Progress& progress) const {
     std::vector<openvdb::Coord> points;
-    points.reserve(static_cast<std::size_t>(own.controlPointCount()));
-    for (auto it = own.controlPoints->cbeginValueOn(); it; ++it) points.push_back(it.getCoord());
-    std::vector<char> isLeft(points.size(), 1);
+    points.reserve(static_cast<std::size_t>(field.controlPointCount()));
+    for (auto it = field.controlPoints->cbeginValueOn(); it; ++it) points.push_back(it.getCoord());
+    std::vector<char> counts(points.size(), 1);
     forRanges(points.size(), progress, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t stage = 0; stage + 1 < stages_.size(); ++stage) {
-            FadeWeights::Reader weights(*stages_[stage].weights);
-            const Halvings &fine = stages_[stage].halvings, &coarse = stages_.back().halvings;
+        for (std::size_t s = 0; s <= stage && s + 1 < stages_.size(); ++s) {
+            FadeWeights::Reader weights(*stages_[s].weights);
+            const Halvings &fine = stages_[s].halvings, &coarse = stages_[stage].halvings;
             const auto there = [&](const openvdb::Coord& c) {
                 return openvdb::Coord(timesTwo(c.x(), coarse[0] - fine[0]),
                                       timesTwo(c.y(), coarse[1] - fine[1]),
                                       timesTwo(c.z(), coarse[2] - fine[2]));
             };
-            for (std::size_t i = begin; i != end; ++i)
-                if (isLeft[i] && weights.at(there(points[i])) >= 1) isLeft[i] = 0;
+            for (std::size_t i = begin; i != end; ++i) {
+                if (!counts[i]) continue;
+                const double weight = weights.at(there(points[i]));
+                counts[i] = s == stage ? weight > 0 : weight < 1;
+            }
         }
     });
-    return std::count(isLeft.begin(), isLeft.end(), 1);
+    return std::count(counts.begin(), counts.end(), 1);
 }
 
 TriangleMesh partOf(const TriangleMesh& mesh, const std::vector<LocalLevels::Place>& places, bool inside) {

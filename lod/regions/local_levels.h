@@ -41,8 +41,9 @@ class LocalLevels {
     // own level's. REQUIRES: as collapseByQuadrics(); sampled / wanted is whole.
     void collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const;
 
-    // Of the own level's control points, those that no region replaces (its weight is below 1).
-    std::int64_t pointsLeftOf(const BSplineField& own, const Progress& progress) const;
+    // Of a stage's control points, the own level's being the last one: those that the mesh depends on, where its weight is
+    // above 0 and no finer stage's is 1.
+    std::int64_t pointsOf(std::size_t stage, const BSplineField& field, const Progress& progress) const;
 
   private:
     struct PointPlace {
