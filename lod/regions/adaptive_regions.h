@@ -41,12 +41,17 @@ class AdaptiveRegions {
     // Each faded out over one voxel of the next coarser level.
     RegionsByStep regionsOf(const Kept& kept) const;
 
+    // That a collapse may add to the fields' own, root mean square, world units. REQUIRES: level 0 has been seen.
+    double deviation() const { return kCollapsed * tolerance_; }
+
     // Measures a blended mesh, both ways, and widens what is kept where it is too far from level 0. Whether there is
     // anything new to try.
     bool widen(Kept& kept, const TriangleMesh& blended, AdaptiveSummary& summary,
                const Progress& progress) const;
 
   private:
+    static constexpr double kCollapsed = 0.3;  // of the tolerance
+
     struct Seen {
         openvdb::math::Transform::ConstPtr lattice;
         Cells bad;  // N_k; none of level 0

@@ -30,7 +30,8 @@ class LevelRegions {
                                        const Progress& progress) const;
     // Measures the mesh of a blend. Whether another one is to be made.
     bool widen(Choice& choice, const TriangleMesh& mesh, const Progress& progress) const;
-    bool isAdaptive() const { return adaptive_.has_value(); }
+    // Of the triangles of a blend, as LocalLevels::collapse() has it. REQUIRES: level 0 has been seen.
+    double deviation() const { return adaptive_ ? adaptive_->deviation() : 0; }
 
   private:
     std::vector<int> keptSteps_;  // of the regions that were asked for, ascending

@@ -75,7 +75,8 @@ std::vector<double> LocalLevels::smallestAt(const TriangleMesh& mesh, const Prog
     return smallest;
 }
 
-void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const {
+void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, double deviation,
+                           const Progress& progress) const {
     const auto edges = [](int steps) {
         return std::exp2(steps / 3.0);
     };  // how many times as long, in the mean
@@ -83,16 +84,17 @@ void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Pr
         const double ratio =
             sampled / wanted * edges(stepsBetween(stages_.front().halvings, stages_[stage].halvings));
         const bool isOwn = stage + 1 == stages_.size();
-        collapseTo(mesh, stage, !isOwn, ratio * ratio, progress);
+        collapseTo(mesh, stage, !isOwn, ratio * ratio, deviation, progress);
         if (isOwn) break;
         const int coarser = stepsBetween(stages_[stage].halvings, stages_[stage + 1].halvings);
-        collapseTo(mesh, stage, false, ratio * ratio * edges(coarser), progress);
+        const double toCoarser = deviation > 0 ? edges(2 * coarser) : edges(coarser);
+        collapseTo(mesh, stage, false, ratio * ratio * toCoarser, deviation, progress);
     }
 }
 
 // Of the triangles that depend on the stage and on none that is finer, have a corner inside or have none, one in `share` is left.
 void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share,
-                             const Progress& progress) const {
+                             double deviation, const Progress& progress) const {
     if (share == 1) return;
     const std::vector<PointPlace> places = pointPlaces(mesh, progress);
     CollapseOptions options;
@@ -105,6 +107,9 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
         const bool hasInside = places[t[0]].inside || places[t[1]].inside || places[t[2]].inside;
         follow += static_cast<std::size_t>(finest) == stage && hasInside == inside;
     }
+    // Triangles at points that stay cannot go, and without a limit others would go instead of them. A level alone is what it is.
+    const bool isAll = follow == static_cast<std::int64_t>(mesh.triangles.size());
+    if (!isAll) options.deviation = deviation;
     options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow +
                         static_cast<std::int64_t>(static_cast<double>(follow) / share);
     collapseByQuadrics(mesh, options, nullptr, progress);
