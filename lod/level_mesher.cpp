@@ -325,10 +325,9 @@ SpeckRemoval LevelMesher::drawBlended(LevelMesh& level, RegionBlend& blend) cons
     SpeckRemoval removal;
     if (!options_.keepSpecks)
         removal = removeSpecks(level.mesh, blend.levels.smallestAt(level.mesh, progress_));
-    const std::size_t before = level.mesh.triangles.size();
     blend.levels.collapse(level.mesh, level.report.refine, options_.refine.value_or(1), regions_->deviation(),
                           progress_);
-    if (level.mesh.triangles.size() != before)
+    if (level.mesh.normals.empty())
         level.mesh.normals = ZeroSet(level.field, 0).normalsOf(level.mesh, progress_);
     finish(level);
     return removal;
