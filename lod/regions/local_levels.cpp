@@ -112,7 +112,10 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
     if (!isAll) options.deviation = deviation;
     options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow +
                         static_cast<std::int64_t>(static_cast<double>(follow) / share);
+    const std::size_t before = mesh.triangles.size();
+    auto normals = mesh.normals;
     collapseByQuadrics(mesh, options, nullptr, progress);
+    if (mesh.triangles.size() == before) mesh.normals = std::move(normals);  // nothing has moved
 }
 
 std::int64_t LocalLevels::pointsOf(std::size_t stage, const BSplineField& field,
