@@ -7,6 +7,7 @@
 
 #include "isowave/error.h"
 #include "lod/option_checks.h"
+#include "lod/regions/region_shape.h"
 
 namespace isowave::lod {
 namespace {
@@ -28,6 +29,13 @@ void checkBudgets(const BudgetOptions& options, bool openBorder) {
     if (openBorder)
         throw UsageError("budgets and limits on the topology need closed meshes; leave --open-border out");
     requireSimplifier("a budget (--triangles, --ratio, --tolerance, --max-genus, --min-component)");
+}
+
+void requireNoRegions(const BudgetOptions& options, const LevelOptions& levels) {
+    const char* option = regionOptionOf(levels);
+    if (option && options.any())
+        throw UsageError(std::string(option) +
+                         " and budgets exclude each other: a budget chooses among whole levels");
 }
 
 Budgets::Budgets(const BudgetOptions& options, std::optional<std::int64_t> inputTriangles,

@@ -15,6 +15,8 @@ namespace isowave::lod {
 
 // Throws UsageError where a budget is asked for that this build, or this solid, cannot have.
 void checkBudgets(const BudgetOptions& options, bool openBorder);
+// Throws UsageError where both budgets and regions are asked for.
+void requireNoRegions(const BudgetOptions& options, const LevelOptions& levels);
 
 class Budgets {
   public:

@@ -267,8 +267,7 @@ Ladder makeLadder(Solid solid, const LevelOptions& options, const LadderVisitor&
 
 Ladder makeBudget(Solid solid, const BudgetOptions& budgetOptions, const LevelOptions& options,
                   const LadderVisitor& visitor, const Progress& progress) {
-    if (budgetOptions.any() && !options.fine.empty())
-        throw UsageError("--fine and budgets exclude each other: a budget chooses among whole levels");
+    lod::requireNoRegions(budgetOptions, options);
     const Solid::State& state = SolidAccess::of(solid);
     StageClock clock(state.stages, state.seconds);
     const std::optional<lod::Border> border = state.openBorder;
@@ -322,8 +321,8 @@ lod::LevelMesh levelMeshOf(Solid solid, int step, const LevelOptions& options, c
     const double begin = clock.secondsSoFar();
     lod::LevelMesher mesher(options, state.order, state.openBorder, lod::LevelMesher::Facts::few,
                             lod::truthOf(solid), progress, clock);
-    if (!options.fine.empty() && !state.order.levelOf(step))
-        throw UsageError(fmt::format("--fine needs a level: step {} is between two", step));
+    if (const char* option = lod::regionOptionOf(options); option && !state.order.levelOf(step))
+        throw UsageError(fmt::format("{} needs a level: step {} is between two", option, step));
     const BSplineField field = lod::fieldAtStep(solid, step, progress, clock);
     for (const int before : mesher.stepsBefore(step))
         mesher.prepare(before, lod::fieldAtStep(solid, before, progress, clock));

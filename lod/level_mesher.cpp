@@ -34,7 +34,7 @@ SolidCounts countsOf(const MeshTopology& topology) {
 
 bool needsLevel0(const LevelOptions& options) {
     return options.preserveVolume || options.hold != Holding::none || options.features || options.refit ||
-           !options.fine.empty();
+           lod::regionOptionOf(options);
 }
 
 namespace lod {
@@ -114,7 +114,7 @@ LevelMesher::LevelMesher(const LevelOptions& options, const StepOrder& order,
       clock_(clock) {
     checkOptions(options, openBorder.has_value());
     checkRegions(options);
-    if (!options.fine.empty()) regions_.emplace(options.fine, order, progress);
+    if (regionOptionOf(options)) regions_.emplace(options, order, progress);
 }
 
 LevelMesher::~LevelMesher() = default;
@@ -229,7 +229,14 @@ BSplineField LevelMesher::fieldToDraw(int step, const BSplineField& field) const
     return refitted(field, level0_->surface, {}, progress_);
 }
 
-LevelMesh LevelMesher::make(int step, const BSplineField& given) {
+LevelMesh LevelMesher::make(int step, const BSplineField& field) {
+    LevelMesh level = whole(step, field);
+    if (regions_) addRegions(level);
+    return level;
+}
+
+// The level without regions.
+LevelMesh LevelMesher::whole(int step, const BSplineField& given) {
     Draft draft = chosen(step, fieldToDraw(step, given));
     limit(draft);
     LevelMesh level = completed(std::move(draft));
@@ -239,14 +246,16 @@ LevelMesh LevelMesher::make(int step, const BSplineField& given) {
         tellWalls(level.report);
         tellDifference(level.report);
     }
-    if (regions_) addRegions(level);
+    if (regions_ && regions_->keeps(step)) {
+        const StageClock::Scope scope(clock_, "regions");
+        regions_->see(drawnBy(level), level.mesh, progress_);
+    }
     return level;
 }
 
 void LevelMesher::prepare(int step, const BSplineField& field) {
-    const std::vector<int> kept = stepsOf(options_.fine, order_);
-    if (step == 0 || std::binary_search(kept.begin(), kept.end(), step)) {
-        make(step, field);
+    if (step == 0 || (regions_ && regions_->keeps(step))) {
+        whole(step, field);
     } else {
         Draft draft = chosen(step, fieldToDraw(step, field));
         limit(draft);
@@ -257,29 +266,38 @@ void LevelMesher::prepare(int step, const BSplineField& field) {
 std::vector<int> LevelMesher::stepsBefore(int step) const {
     std::vector<int> all = stepsOf(options_.fine, order_);
     if (needsLevel0()) all.push_back(0);
-    if (levelsLimit(options_, openBorder_.has_value()))
+    if (levelsLimit(options_, openBorder_.has_value()) || options_.adaptive)
         for (int level = 1; order_.stepOf(level) < step; ++level) all.push_back(order_.stepOf(level));
     std::set<int> steps(all.begin(), all.end());
     return {steps.begin(), steps.lower_bound(step)};
 }
 
+DrawnLevel LevelMesher::drawnBy(const LevelMesh& level) const {
+    const int step = level.report.step;
+    return {step, level.field, level.report.refine, smallestAt(step, level.field)};
+}
+
 void LevelMesher::addRegions(LevelMesh& level) {
     LevelReport& report = level.report;
     const StageClock::Scope scope(clock_, "regions");
-    if (report.step == 0 && !report.vanished()) regions_->requireWithin(boxAround(level.mesh));
-    const double smallest = smallestAt(report.step, level.field);
-    regions_->remember(report.step, level.field, report.refine, smallest, progress_);
-    if (report.step <= stepsOf(options_.fine, order_).front()) return;
-    progress_("blending", 0);
-    auto blend = regions_->blended(report.step, level.field, report.refine, smallest, progress_);
+    const DrawnLevel own = drawnBy(level);
+    LevelRegions::Choice choice = regions_->choiceFor(own);
+    std::optional<RegionBlend> blend;
+    SpeckRemoval removal;
+    do {
+        progress_("blending", 0);
+        blend = regions_->blended(own, choice, progress_);
+        if (!blend) break;
+        removal = drawBlended(level, *blend);
+    } while (regions_->widen(choice, level.mesh, progress_));
     if (!blend) {
-        if (!std::exchange(toldOfRegions_, true))
+        if (!choice.asked.empty() && !std::exchange(toldOfRegions_, true))
             progress_.say(fmt::format("step {}: nothing in the regions of --fine differs from a finer level",
                                       report.step));
         return;
     }
     report.regions = blend->summary;
-    putRemoval(level, drawBlended(level, *blend), smallest);
+    putRemoval(level, removal, own.smallest);
     level.places = blend->levels.placesOf(level.mesh, progress_);
     const auto count = [&](LocalLevels::Place place) {
         return std::count(level.places.begin(), level.places.end(), place);
@@ -287,6 +305,17 @@ void LevelMesher::addRegions(LevelMesh& level) {
     report.regions->trianglesInside = count(LocalLevels::Place::inside);
     report.regions->trianglesFading = count(LocalLevels::Place::fading);
     report.regions->trianglesOutside = count(LocalLevels::Place::outside);
+    if (options_.adaptive) tellAdaptive(report, choice.summary);
+}
+
+// Silence would mean that the tolerance holds.
+void LevelMesher::tellAdaptive(LevelReport& report, const AdaptiveSummary& summary) const {
+    report.regions->adaptive = summary;
+    if (summary.samplesBeyond == 0) return;
+    progress_.say(fmt::format(
+        "step {}: {} up to {:.3g} away from level 0, more than the {:.3g} of --adaptive", report.step,
+        counted(summary.samplesBeyond, "sample of the surface is", "samples of the surface are"),
+        summary.farthest, summary.tolerance));
 }
 
 SpeckRemoval LevelMesher::drawBlended(LevelMesh& level, RegionBlend& blend) const {
@@ -296,9 +325,9 @@ SpeckRemoval LevelMesher::drawBlended(LevelMesh& level, RegionBlend& blend) cons
     SpeckRemoval removal;
     if (!options_.keepSpecks)
         removal = removeSpecks(level.mesh, blend.levels.smallestAt(level.mesh, progress_));
-    const std::size_t before = level.mesh.triangles.size();
-    blend.levels.collapse(level.mesh, level.report.refine, options_.refine.value_or(1), progress_);
-    if (level.mesh.triangles.size() != before)
+    blend.levels.collapse(level.mesh, level.report.refine, options_.refine.value_or(1), regions_->deviation(),
+                          progress_);
+    if (level.mesh.normals.empty())
         level.mesh.normals = ZeroSet(level.field, 0).normalsOf(level.mesh, progress_);
     finish(level);
     return removal;

@@ -6,7 +6,7 @@
 
 #include "base/stage_clock.h"
 #include "isowave/ladder.h"
-#include "lod/regions/fine_regions.h"
+#include "lod/regions/level_regions.h"
 #include "lod/solid_state.h"
 #include "polygonize/specks.h"
 
@@ -99,9 +99,12 @@ class LevelMesher {
     Draft withoutGaps(Draft draft, int step, const BSplineField& field);
     void limit(Draft& draft);
     LevelMesh completed(Draft draft) const;
+    LevelMesh whole(int step, const BSplineField& field);
     void putRemoval(LevelMesh& level, const SpeckRemoval& removal, double smallest) const;
+    DrawnLevel drawnBy(const LevelMesh& level) const;
     void addRegions(LevelMesh& level);
     SpeckRemoval drawBlended(LevelMesh& level, RegionBlend& blend) const;
+    void tellAdaptive(LevelReport& report, const AdaptiveSummary& summary) const;
     void finish(LevelMesh& level) const;
     bool holds(int step) const;
     bool mustFall(int step) const;
@@ -133,7 +136,7 @@ class LevelMesher {
     const Progress& progress_;
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;
-    std::optional<FineRegions> regions_;
+    std::optional<LevelRegions> regions_;
     bool toldOfRegions_ = false, toldOfVolume_ = false;
 };
 

@@ -29,7 +29,7 @@ namespace lod {
 StepChoice::StepChoice(const LevelOptions& options, bool budgets, bool levelsLimit, const StepOrder& order)
     : levels_(!budgets || options.levels || options.steps),
       all_(budgets),
-      levelsLimit_(levelsLimit),
+      allBefore_(levelsLimit || options.adaptive),
       steps_(options.steps.has_value()),
       order_(order) {
     checkRanges(options);

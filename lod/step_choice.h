@@ -12,7 +12,7 @@ namespace isowave::lod {
 class StepChoice {
   public:
     // budgets: every step is looked at, but levels are asked for only where the options say so. levelsLimit: levels before the
-    // first that is asked for are looked at. Throws UsageError.
+    // first that is asked for are looked at, as they are with LevelOptions::adaptive. Throws UsageError.
     StepChoice(const LevelOptions& options, bool budgets, bool levelsLimit, const StepOrder& order);
 
     // Whether the step's level is asked for.
@@ -22,7 +22,7 @@ class StepChoice {
     // Whether the step is looked at, be it asked for or not.
     bool visits(int step) const {
         return all_ || step == 0 || has(step) || isKept(step) ||
-               (levelsLimit_ && step < first_ && order_.levelOf(step));
+               (allBefore_ && step < first_ && order_.levelOf(step));
     }
     // Whether a region of coarser levels keeps the step's level.
     bool isKept(int step) const { return std::find(kept_.begin(), kept_.end(), step) != kept_.end(); }
@@ -33,7 +33,7 @@ class StepChoice {
     std::optional<int> lastVisited() const { return all_ ? std::nullopt : last_; }
 
   private:
-    bool levels_, all_, levelsLimit_;
+    bool levels_, all_, allBefore_;
     bool steps_;  // every step is asked for, not levels alone
     StepOrder order_;
     int first_ = 0;

@@ -62,6 +62,20 @@ double positive(const std::string& text) {
     return value;
 }
 
+Length length(const std::string& text) {
+    const std::size_t end = text.find_first_not_of("0123456789.eE+-");
+    const std::string unit = end == text.npos ? "" : text.substr(end);
+    const bool voxels = unit == "voxel" || unit == "voxels";
+    if (end == 0 || (!voxels && unit != "mm"))
+        throw UsageError("'" + text + "' is no length with a unit; write for example 0.1voxel or 0.05mm");
+    return {positive(text.substr(0, end)), voxels ? Length::Unit::voxels : Length::Unit::world};
+}
+
+Length lengthOrNumber(const std::string& text) {
+    const bool hasUnit = text.ends_with("mm") || text.find("voxel") != std::string::npos;
+    return hasUnit ? length(text) : Length{positive(text), Length::Unit::world};
+}
+
 std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high) {
     const auto value = parseWhole<std::int64_t>(text, "a whole number");
     if (value < low || value > high)

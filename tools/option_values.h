@@ -18,6 +18,10 @@ namespace isowave::tools {
 
 double number(const std::string& text);    // finite
 double positive(const std::string& text);  // above 0
+// 0.1voxel, 0.05mm (mm: world units), above 0.
+Length length(const std::string& text);
+// The same; a number alone is in world units.
+Length lengthOrNumber(const std::string& text);
 // low <= value <= high
 std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high);
 // A file's or folder's name: not empty, and nothing that looks like an option ("--quiet" where a name was left out).

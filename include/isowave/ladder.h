@@ -14,7 +14,7 @@
 //
 //   each step:  field -> hold what is thin -> iso-value -> polygonize -> remove specks -> compact -> relax -> cut off at an open border
 //               -> count -> measure against level 0
-// With regions that keep a finer level (LevelOptions::fine) the field is blended with that level's before it is polygonized.
+// With regions that keep a finer level (LevelOptions::fine, adaptive) the field is blended with that level's before it is polygonized.
 //
 // Distances to level 0, budgets and `compact` need the parts of isowave that CGAL's GPL packages are in (canMeasureDistances
 // in isowave/measure.h). Without them distances are empty and the others a UsageError.
@@ -85,6 +85,9 @@ struct LevelOptions {
     // Where levels keep the details of finer ones; where regions overlap the finest counts. Needs levels, not steps or budgets,
     // at iso-value 0.
     std::vector<FineRegion> fine = {};
+    // Such regions, found by themselves: at each place a level follows the coarsest one, up to itself, up to which all are within this
+    // of level 0, both ways. Above 0; voxels count by the shortest edge of level 0's. What `fine` needs; both may be given.
+    std::optional<Length> adaptive = {};
 };
 
 // Meshes by budget instead of by level: the step whose topology suits the budget best, simplified by edge collapse.
@@ -154,15 +157,25 @@ struct WallThickness {
     std::optional<int> heldUpTo;
 };
 
-// What the regions of LevelOptions::fine are to a level. `inside`: where all control points that the surface depends on are
+// LevelOptions::adaptive: what became of the tolerance. Distances are of samples of the level's mesh and of level 0's, each from the
+// other one: vertices, and middles of triangles or of parts whose sides are at most a voxel of level 0 long.
+struct AdaptiveSummary {
+    double tolerance = 0;            // world units
+    double farthest = 0;             // the largest distance, world units
+    std::int64_t samplesBeyond = 0;  // that are farther than the tolerance
+    int rounds = 0;  // how often the mesh was made: where it was too far, finer levels were kept
+};
+
+// What the regions of LevelOptions::fine and adaptive are to a level. `inside`: where all control points that the surface depends on are
 // those of a region's level; `fading`: where some are a mixture of both; `outside`: where all are the level's own.
 struct RegionSummary {
-    // Control points: those of the regions' levels, up to where they have faded out, and the level's own that are not replaced
-    // by them.
+    // Control points that the mesh depends on: those of the regions' levels, up to where they have faded out, and the level's own;
+    // none that a finer level replaces.
     std::int64_t finePoints = 0, coarsePoints = 0;
     std::int64_t trianglesInside = 0, trianglesFading = 0, trianglesOutside = 0;
     // From this mesh to level 0, world units, as LevelReport::rmsToLevel0: of the triangles inside, and of all others.
     std::optional<double> rmsInside, maxInside, rmsOutside, maxOutside;
+    std::optional<AdaptiveSummary> adaptive;
 };
 
 // A cut or a fill that made a level's topology simpler: a hole was filled or its ring cut, a part removed or joined to

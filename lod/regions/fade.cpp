@@ -149,35 +149,42 @@ void put(std::vector<Block>& blocks, const std::vector<Coord>& origins, openvdb:
 
 }  // namespace
 
-Fade::Fade(std::vector<std::shared_ptr<const RegionDistance>> regions,
-           const openvdb::math::Transform& lattice, double width)
-    : regions_(std::move(regions)), margin_(2 * diagonalOf(lattice)), width_(width), blockReach_(0) {
+double marginOn(const openvdb::math::Transform& lattice) { return 2 * diagonalOf(lattice); }
+
+FadingRegion fading(std::shared_ptr<const RegionDistance> region, const openvdb::math::Transform& lattice,
+                    double width) {
+    return {std::move(region), marginOn(lattice), width};
+}
+
+Fade::Fade(std::vector<FadingRegion> regions, const openvdb::math::Transform& lattice)
+    : regions_(std::move(regions)), blockReach_(0) {
     for (int axis = 0; axis < 3; ++axis) blockReach_ += kSide / 2 * axisOf(lattice, axis).length();
 }
 
-double Fade::distanceAt(const Coord& point, double most) const {
-    double least = HUGE_VAL;
-    for (const auto& region : regions_) least = std::min(least, region->at(point, most));
-    return least;
+double Fade::at(const Coord& point) const {
+    double largest = 0;
+    for (const auto& [region, margin, width] : regions_) {
+        const double distance = region->at(point, margin + width);
+        const double t = std::clamp(1 - (distance - margin) / width, 0.0, 1.0);
+        largest = std::max(largest, t * t * (3 - 2 * t));
+    }
+    return largest;
 }
-
-double Fade::weightOf(double distance) const {
-    const double t = std::clamp(1 - (distance - margin_) / width_, 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
-double Fade::at(const Coord& point) const { return weightOf(distanceAt(point, margin_ + width_)); }
 
 double Fade::ofBlock(const Coord& origin) const {
-    const double most = margin_ + width_ + blockReach_;
-    const double distance = distanceAt(origin.offsetBy(kSide / 2), most);
-    if (distance - blockReach_ >= margin_ + width_) return 0;
-    return distance + blockReach_ <= margin_ ? 1 : -1;
+    double weight = 0;
+    for (const auto& [region, margin, width] : regions_) {
+        const double reach = margin + width;
+        const double distance = region->at(origin.offsetBy(kSide / 2), reach + blockReach_);
+        if (distance + blockReach_ <= margin) return 1;
+        if (distance - blockReach_ < reach) weight = -1;
+    }
+    return weight;
 }
 
 openvdb::CoordBBox Fade::box() const {
     openvdb::CoordBBox box;
-    for (const auto& region : regions_) box.expand(region->boxWithin(margin_ + width_));
+    for (const auto& [region, margin, width] : regions_) box.expand(region->boxWithin(margin + width));
     return box;
 }
 

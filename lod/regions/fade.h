@@ -11,9 +11,11 @@
 // differ from the pyramid's by a correction of c and one of f; b then fades from one corrected field to the other.)
 //
 // F at x depends on the 64 control points around x, less than 2 voxels from it on each axis. Therefore w is 1 up to
-// `margin` = 2 diagonals of a voxel beyond the region, and falls to 0 over `width`, one voxel of the coarse level:
+// `margin` = 2 diagonals of a voxel beyond a box or a mesh, and falls to 0 over `width`, one voxel of the coarse level:
 //
 //   w = t^2 (3 - 2 t),   t = 1 - (distance - margin) / width, between 0 and 1
+//
+// Of several regions the largest weight counts.
 //
 // (1) In the region F is the finer level's, to the bit; farther than width + 2 margin from it, the coarse level's, to the bit of P c.
 // (2) b is one field with one zero set, whatever f and P c are: there is no seam that could open.
@@ -29,11 +31,21 @@
 
 namespace isowave::lod {
 
+struct FadingRegion {
+    std::shared_ptr<const RegionDistance> region;  // on the lattice of the finer level
+    double margin = 0;                             // world units, from 0 on
+    double width = 1;                              // world units, above 0
+};
+
+// Two diagonals of a voxel, world units.
+double marginOn(const openvdb::math::Transform& lattice);
+// A region with that margin.
+FadingRegion fading(std::shared_ptr<const RegionDistance> region, const openvdb::math::Transform& lattice,
+                    double width);
+
 class Fade {
   public:
-    // regions: on one lattice, that of the finer level; the nearest one counts. width: world units, above 0.
-    Fade(std::vector<std::shared_ptr<const RegionDistance>> regions, const openvdb::math::Transform& lattice,
-         double width);
+    Fade(std::vector<FadingRegion> regions, const openvdb::math::Transform& lattice);
 
     double at(const openvdb::Coord& point) const;
 
@@ -44,11 +56,7 @@ class Fade {
     openvdb::CoordBBox box() const;
 
   private:
-    double distanceAt(const openvdb::Coord& point, double most) const;
-    double weightOf(double distance) const;
-
-    std::vector<std::shared_ptr<const RegionDistance>> regions_;
-    double margin_, width_;
+    std::vector<FadingRegion> regions_;
     double blockReach_;  // no point of a block is farther than this from its middle one
 };
 

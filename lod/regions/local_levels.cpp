@@ -75,7 +75,8 @@ std::vector<double> LocalLevels::smallestAt(const TriangleMesh& mesh, const Prog
     return smallest;
 }
 
-void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const {
+void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, double deviation,
+                           const Progress& progress) const {
     const auto edges = [](int steps) {
         return std::exp2(steps / 3.0);
     };  // how many times as long, in the mean
@@ -83,16 +84,17 @@ void LocalLevels::collapse(TriangleMesh& mesh, int sampled, int wanted, const Pr
         const double ratio =
             sampled / wanted * edges(stepsBetween(stages_.front().halvings, stages_[stage].halvings));
         const bool isOwn = stage + 1 == stages_.size();
-        collapseTo(mesh, stage, !isOwn, ratio * ratio, progress);
+        collapseTo(mesh, stage, !isOwn, ratio * ratio, deviation, progress);
         if (isOwn) break;
         const int coarser = stepsBetween(stages_[stage].halvings, stages_[stage + 1].halvings);
-        collapseTo(mesh, stage, false, ratio * ratio * edges(coarser), progress);
+        const double toCoarser = deviation > 0 ? edges(2 * coarser) : edges(coarser);
+        collapseTo(mesh, stage, false, ratio * ratio * toCoarser, deviation, progress);
     }
 }
 
 // Of the triangles that depend on the stage and on none that is finer, have a corner inside or have none, one in `share` is left.
 void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share,
-                             const Progress& progress) const {
+                             double deviation, const Progress& progress) const {
     if (share == 1) return;
     const std::vector<PointPlace> places = pointPlaces(mesh, progress);
     CollapseOptions options;
@@ -105,30 +107,40 @@ void LocalLevels::collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside,
         const bool hasInside = places[t[0]].inside || places[t[1]].inside || places[t[2]].inside;
         follow += static_cast<std::size_t>(finest) == stage && hasInside == inside;
     }
+    // Triangles at points that stay cannot go, and without a limit others would go instead of them. A level alone is what it is.
+    const bool isAll = follow == static_cast<std::int64_t>(mesh.triangles.size());
+    if (!isAll) options.deviation = deviation;
     options.triangles = static_cast<std::int64_t>(mesh.triangles.size()) - follow +
                         static_cast<std::int64_t>(static_cast<double>(follow) / share);
+    const std::size_t before = mesh.triangles.size();
+    auto normals = mesh.normals;
     collapseByQuadrics(mesh, options, nullptr, progress);
+    if (mesh.triangles.size() == before) mesh.normals = std::move(normals);  // nothing has moved
 }
 
-std::int64_t LocalLevels::pointsLeftOf(const BSplineField& own, const Progress& progress) const {
+std::int64_t LocalLevels::pointsOf(std::size_t stage, const BSplineField& field,
+                                   const Progress& progress) const {
     std::vector<openvdb::Coord> points;
-    points.reserve(static_cast<std::size_t>(own.controlPointCount()));
-    for (auto it = own.controlPoints->cbeginValueOn(); it; ++it) points.push_back(it.getCoord());
-    std::vector<char> isLeft(points.size(), 1);
+    points.reserve(static_cast<std::size_t>(field.controlPointCount()));
+    for (auto it = field.controlPoints->cbeginValueOn(); it; ++it) points.push_back(it.getCoord());
+    std::vector<char> counts(points.size(), 1);
     forRanges(points.size(), progress, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t stage = 0; stage + 1 < stages_.size(); ++stage) {
-            FadeWeights::Reader weights(*stages_[stage].weights);
-            const Halvings &fine = stages_[stage].halvings, &coarse = stages_.back().halvings;
+        for (std::size_t s = 0; s <= stage && s + 1 < stages_.size(); ++s) {
+            FadeWeights::Reader weights(*stages_[s].weights);
+            const Halvings &fine = stages_[s].halvings, &coarse = stages_[stage].halvings;
             const auto there = [&](const openvdb::Coord& c) {
                 return openvdb::Coord(timesTwo(c.x(), coarse[0] - fine[0]),
                                       timesTwo(c.y(), coarse[1] - fine[1]),
                                       timesTwo(c.z(), coarse[2] - fine[2]));
             };
-            for (std::size_t i = begin; i != end; ++i)
-                if (isLeft[i] && weights.at(there(points[i])) >= 1) isLeft[i] = 0;
+            for (std::size_t i = begin; i != end; ++i) {
+                if (!counts[i]) continue;
+                const double weight = weights.at(there(points[i]));
+                counts[i] = s == stage ? weight > 0 : weight < 1;
+            }
         }
     });
-    return std::count(isLeft.begin(), isLeft.end(), 1);
+    return std::count(counts.begin(), counts.end(), 1);
 }
 
 TriangleMesh partOf(const TriangleMesh& mesh, const std::vector<LocalLevels::Place>& places, bool inside) {

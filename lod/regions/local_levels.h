@@ -38,11 +38,14 @@ class LocalLevels {
     std::vector<double> smallestAt(const TriangleMesh& mesh, const Progress& progress) const;
 
     // sampled, wanted: samples of a voxel along each axis: of the mesh, of the finest region's voxels; and to be, of each place's
-    // own level's. REQUIRES: as collapseByQuadrics(); sampled / wanted is whole.
-    void collapse(TriangleMesh& mesh, int sampled, int wanted, const Progress& progress) const;
+    // own level's. deviation: CollapseOptions', world units, 0: any. Where there is one, what fades out has the coarser level's share: both
+    // levels are near enough there. REQUIRES: as collapseByQuadrics(); sampled / wanted is whole.
+    void collapse(TriangleMesh& mesh, int sampled, int wanted, double deviation,
+                  const Progress& progress) const;
 
-    // Of the own level's control points, those that no region replaces (its weight is below 1).
-    std::int64_t pointsLeftOf(const BSplineField& own, const Progress& progress) const;
+    // Of a stage's control points, the own level's being the last one: those that the mesh depends on, where its weight is
+    // above 0 and no finer stage's is 1.
+    std::int64_t pointsOf(std::size_t stage, const BSplineField& field, const Progress& progress) const;
 
   private:
     struct PointPlace {
@@ -50,7 +53,7 @@ class LocalLevels {
         bool inside = false;
     };
     std::vector<PointPlace> pointPlaces(const TriangleMesh& mesh, const Progress& progress) const;
-    void collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share,
+    void collapseTo(TriangleMesh& mesh, std::size_t stage, bool inside, double share, double deviation,
                     const Progress& progress) const;
 
     std::vector<Stage> stages_;  // the own level is the last one

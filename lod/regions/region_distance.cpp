@@ -27,18 +27,18 @@ void requireExtent(const std::vector<openvdb::Vec3d>& points, const RegionShape&
     openvdb::BBoxd box;
     for (const openvdb::Vec3d& p : points) box.expand(p);
     const double extent = box.extents()[box.maxExtent()];
-    if (!(extent <= RegionDistance::kLargest))
+    if (!(extent <= ShapeDistance::kLargest))
         throw InputError(
             shape.name,
             fmt::format("the mesh is {:.3g} voxels of level {} across, more than {:g}; is it in the "
                         "units of the solid? Give a smaller one, or a box",
-                        extent, shape.level, RegionDistance::kLargest));
+                        extent, shape.level, ShapeDistance::kLargest));
 }
 
 }  // namespace
 
-RegionDistance::RegionDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice,
-                               const Progress& progress)
+ShapeDistance::ShapeDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice,
+                             const Progress& progress)
     : shape_(std::move(shape)), lattice_(std::move(lattice)) {
     const auto* closed = std::get_if<RegionShape::Closed>(&shape_.where);
     if (!closed) return;
@@ -50,7 +50,7 @@ RegionDistance::RegionDistance(RegionShape shape, openvdb::math::Transform::Cons
     lines_ = std::make_unique<const LatticeLines>(points, closed->mesh.triangles, closed->evenOdd, progress);
 }
 
-double RegionDistance::at(const openvdb::Coord& point, double most) const {
+double ShapeDistance::at(const openvdb::Coord& point, double most) const {
     const openvdb::Vec3d world = lattice_->indexToWorld(point);
     if (const auto* box = std::get_if<FineRegion::Box>(&shape_.where))
         return distanceTo(*box, world) - shape_.within;
@@ -62,7 +62,7 @@ double RegionDistance::at(const openvdb::Coord& point, double most) const {
     return (lines_->inside(point) ? -distance : distance) - shape_.within;
 }
 
-openvdb::CoordBBox RegionDistance::boxWithin(double distance) const {
+openvdb::CoordBBox ShapeDistance::boxWithin(double distance) const {
     const PointBox bounds = shape_.bounds();
     openvdb::CoordBBox box;
     for (int corner = 0; corner < 8; ++corner) {

@@ -14,19 +14,26 @@ double distanceTo(const RegionBox& box, const openvdb::Vec3d& p);
 
 class RegionDistance {
   public:
+    virtual ~RegionDistance() = default;
+
+    // Distance of a lattice point from the region, 0 or negative inside; world units. Where it is more than `most` on either side,
+    // any number that is so, too.
+    virtual double at(const openvdb::Coord& point, double most) const = 0;
+
+    // Lattice points outside this box are farther than `distance`.
+    virtual openvdb::CoordBBox boxWithin(double distance) const = 0;
+};
+
+// Of a box or a mesh, widened by its `within`.
+class ShapeDistance : public RegionDistance {
+  public:
     static constexpr double kLargest = 8192;  // voxels of a mesh, along an axis
 
     // lattice: index -> world, of the level that the region keeps. Throws InputError for a mesh of more than kLargest voxels.
-    RegionDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice, const Progress& progress);
+    ShapeDistance(RegionShape shape, openvdb::math::Transform::ConstPtr lattice, const Progress& progress);
 
-    // Distance of a lattice point from the region, widened by its `within`; negative inside; world units. Where it is more than
-    // `most` on either side, any number that is so, too.
-    double at(const openvdb::Coord& point, double most) const;
-
-    // Lattice points outside this box are farther than `distance`.
-    openvdb::CoordBBox boxWithin(double distance) const;
-
-    const RegionShape& shape() const { return shape_; }
+    double at(const openvdb::Coord& point, double most) const override;
+    openvdb::CoordBBox boxWithin(double distance) const override;
 
   private:
     RegionShape shape_;

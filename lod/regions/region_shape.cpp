@@ -7,6 +7,7 @@
 
 #include "isowave/error.h"
 #include "lod/open_mesh.h"
+#include "lod/option_checks.h"
 #include "volume/mesh_repair.h"
 
 namespace isowave::lod {
@@ -86,11 +87,18 @@ std::string textOf(const FineRegion& region) {
     return path ? path->string() : "a mesh";
 }
 
+const char* regionOptionOf(const LevelOptions& options) {
+    if (!options.fine.empty()) return "--fine";
+    return options.adaptive ? "--adaptive" : nullptr;
+}
+
 void checkRegions(const LevelOptions& options) {
-    if (options.fine.empty()) return;
-    const auto refuse = [](bool given, const char* what) {
-        if (given) throw UsageError(std::string("--fine and ") + what);
+    const char* option = regionOptionOf(options);
+    if (!option) return;
+    const auto refuse = [&](bool given, const char* what) {
+        if (given) throw UsageError(std::string(option) + " and " + what);
     };
+    if (options.adaptive) requirePositive("--adaptive", std::optional<double>(options.adaptive->value));
     refuse(options.steps.has_value(), "--steps exclude each other; a region keeps a level: give --levels");
     refuse(options.preserveVolume,
            "--preserve-volume exclude each other: details are blended at iso-value 0");

@@ -16,7 +16,10 @@ std::string textOf(const FineRegion& region);
 // "1,2,3"
 std::string textOf(const Point& point);
 
-// Throws UsageError for a box without extent, numbers that are not finite, levels below 0 or not below the last one asked
+// "--fine" or "--adaptive", the first of them that is given; null: neither is.
+const char* regionOptionOf(const LevelOptions& options);
+
+// Throws UsageError for a tolerance that is not above 0, a box without extent, numbers that are not finite, levels below 0 or not below the last one asked
 // for, and for options that do not go with regions. No file is read.
 void checkRegions(const LevelOptions& options);
 

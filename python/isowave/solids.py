@@ -519,6 +519,7 @@ def lod(
     deviation: bool = False,
     fine: Union[None, str, PathLike, Sequence[Union[str, PathLike]]] = None,
     fine_within: Optional[float] = None,
+    adaptive: Union[None, float, str] = None,
     # the fit
     fit: Optional[str] = None,
     half_width: Optional[float] = None,
@@ -568,6 +569,8 @@ def lod(
         the short ones alone; "cubes" does so wherever that brings voxels nearer to a cube; "xyz" lets every level halve all three.
     fine: a region "x,y,z:x,y,z" or "mesh.stl", ":1" behind it for level 1 instead of 0; or several. Coarser levels keep the
         details of that level there; ``fine_within`` widens all of them.
+    adaptive: coarser levels keep finer ones wherever they would be farther than this from level 0: a number (world units), or a text
+        with a unit, "0.3voxel" (of level 0) or "0.2mm".
     progress: a callback (share of the stage 0 to 1, stage), always called by the thread that called lod(), or a bar of tqdm.
     keep_field: keep the field in memory, for Level.field.
 
@@ -588,6 +591,7 @@ def lod(
     making = given(
         levels=levels, steps=steps, refine=refine, hold=hold, preserve_volume=preserve_volume, keep_specks=keep_specks,
         features=features, refit=refit, compact=compact, relax=relax, deviation=deviation, fine=fine, fine_within=fine_within,
+        adaptive=adaptive,
         triangles=triangles, ratio=ratio, tolerance=tolerance, max_genus=max_genus, max_parts=max_parts, min_component=min_component,
     )  # fmt: skip
     opening = given(

@@ -117,9 +117,9 @@ struct Pair {
 
 lod::Blend blended(const Pair& fields, const RegionBox& box, double width) {
     const auto& lattice = fields.fine.transform();
-    auto region = std::make_shared<const lod::RegionDistance>(lod::regionShapeOf(boxRegion(box), {}),
-                                                              lattice.copy(), Progress{});
-    lod::FadeWeights weights(lod::Fade({region}, lattice, width), lattice);
+    auto region = std::make_shared<const lod::ShapeDistance>(lod::regionShapeOf(boxRegion(box), {}),
+                                                             lattice.copy(), Progress{});
+    lod::FadeWeights weights(lod::Fade({lod::fading(region, lattice, width)}, lattice), lattice);
     return lod::blend(insertKnots(insertKnots(fields.coarse)), fields.fine, weights, {});
 }
 

@@ -292,7 +292,7 @@ def test_every_option_of_the_command_is_an_argument():
     assert of_curves <= set(inspect.signature(plane.curves).parameters)
     given = set(inspect.signature(isowave.analyse).parameters)
     making = {"levels", "steps", "refine", "hold", "preserve_volume", "keep_specks", "features", "refit", "compact", "relax",
-              "deviation", "fine", "fine_within", "triangles", "ratio", "tolerance", "max_genus", "max_parts", "min_component"}  # fmt: skip
+              "deviation", "fine", "fine_within", "adaptive", "triangles", "ratio", "tolerance", "max_genus", "max_parts", "min_component"}  # fmt: skip
     assert options - making <= given
 
 

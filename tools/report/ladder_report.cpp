@@ -83,13 +83,22 @@ Json holdJson(const std::optional<HoldSummary>& h) {
             {"unmet", h->unmet}};
 }
 
+Json adaptiveJson(const std::optional<AdaptiveSummary>& a) {
+    if (!a) return nullptr;
+    return {{"tolerance", a->tolerance},
+            {"max_distance", finite(a->farthest)},
+            {"samples_beyond", a->samplesBeyond},
+            {"rounds", a->rounds}};
+}
+
 Json regionsJson(const std::optional<RegionSummary>& r) {
     if (!r) return nullptr;
-    return {{"control_points_fine", r->finePoints},          {"control_points_coarse", r->coarsePoints},
-            {"triangles_inside", r->trianglesInside},        {"triangles_fading", r->trianglesFading},
-            {"triangles_outside", r->trianglesOutside},      {"rms_to_level0_inside", orNull(r->rmsInside)},
-            {"max_to_level0_inside", orNull(r->maxInside)},  {"rms_to_level0_outside", orNull(r->rmsOutside)},
-            {"max_to_level0_outside", orNull(r->maxOutside)}};
+    return {
+        {"control_points_fine", r->finePoints},           {"control_points_coarse", r->coarsePoints},
+        {"triangles_inside", r->trianglesInside},         {"triangles_fading", r->trianglesFading},
+        {"triangles_outside", r->trianglesOutside},       {"rms_to_level0_inside", orNull(r->rmsInside)},
+        {"max_to_level0_inside", orNull(r->maxInside)},   {"rms_to_level0_outside", orNull(r->rmsOutside)},
+        {"max_to_level0_outside", orNull(r->maxOutside)}, {"adaptive", adaptiveJson(r->adaptive)}};
 }
 
 Json inputJson(const std::optional<InputDistance>& d) {

@@ -303,8 +303,7 @@ void Lod::check() {
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     tiles_.requireLevels(levels_, budgets_);
-    if (budgets_.any() && !levels_.fine.empty())
-        throw UsageError("--fine and budgets exclude each other: a budget chooses among whole levels");
+    lod::requireNoRegions(budgets_, levels_);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
     checkRanges(levels_);

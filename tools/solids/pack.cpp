@@ -12,16 +12,6 @@
 namespace isowave::tools {
 namespace {
 
-// 0.1voxel, 0.05mm
-Length lengthOf(const std::string& text) {
-    const std::size_t end = text.find_first_not_of("0123456789.eE+-");
-    const std::string unit = end == text.npos ? "" : text.substr(end);
-    const bool voxels = unit == "voxel" || unit == "voxels";
-    if (end == 0 || (!voxels && unit != "mm"))
-        throw UsageError("'" + text + "' is no length with a unit; write for example 0.1voxel or 0.05mm");
-    return {positive(text.substr(0, end)), voxels ? Length::Unit::voxels : Length::Unit::world};
-}
-
 class Pack : public Command {
   public:
     Pack()
@@ -35,11 +25,11 @@ class Pack : public Command {
                        "how far the field may move at the surface, as a distance: 0.1voxel or 0.05mm (mm: "
                        "the unit of the "
                        "coordinates, whatever it is)",
-                       [this](const std::string& v) { how_.bound = lengthOf(v); });
+                       [this](const std::string& v) { how_.bound = length(v); });
         options_.value(
             "--max-distance", "LEN", "no limit",
             "how far vertices of level 0's mesh may move; the bound is made smaller until they do not",
-            [this](const std::string& v) { how_.maxDistance = lengthOf(v); });
+            [this](const std::string& v) { how_.maxDistance = length(v); });
         declareJson();
         declareSolid(options_, solid_);
         declareThreads();

@@ -236,6 +236,11 @@ void declareRegions(OptionList& options, LevelOptions& level) {
                       if (level.fine.empty()) throw UsageError("widens the regions of --fine; give one");
                       for (FineRegion& r : level.fine) r.within = within;
                   });
+    options.value(
+        "--adaptive", "LEN", "",
+        "coarser levels keep the details of finer ones wherever they would be farther than this from "
+        "level 0: 0.3voxel (of level 0), 0.2mm or 0.2 (both world units)",
+        [&](const std::string& v) { level.adaptive = lengthOrNumber(v); });
 }
 
 void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& level) {

@@ -23,7 +23,7 @@ void declareFeatures(OptionList& options, LevelOptions& level);
 
 // --levels, --steps: which meshes.
 void declareLevels(OptionList& options, LevelOptions& level);
-// --fine, --fine-within: regions that keep a finer level.
+// --fine, --fine-within, --adaptive: regions that keep a finer level.
 void declareRegions(OptionList& options, LevelOptions& level);
 // --triangles ... --min-component. A limit on the topology is one of the levels' too, wherefore it goes to `level`.
 void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& level);

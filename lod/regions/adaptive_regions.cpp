@@ -1,0 +1,192 @@
+#include "lod/regions/adaptive_regions.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace isowave::lod {
+namespace {
+
+using openvdb::Coord;
+
+// Samples stand for the surface around them: places are sought beyond a little less than the tolerance. With 0.95 samples five times as
+// dense found 1 % more than the tolerance.
+constexpr double kAim = 0.9;
+constexpr int kMostRounds = 8;
+
+double shortestVoxel(const openvdb::math::Transform& lattice) {
+    const openvdb::Vec3d spacing = lattice.voxelSize();
+    return std::min({spacing.x(), spacing.y(), spacing.z()});
+}
+
+Coord halved(const Coord& c, const std::array<int, 3>& halvings) {
+    return {c.x() >> halvings[0], c.y() >> halvings[1], c.z() >> halvings[2]};
+}
+
+// The low corners of blocks of 8^3 points of a coarse lattice that hold all control points of both fields.
+std::vector<Coord> blocksAround(const BSplineField& coarse, const BSplineField& fine,
+                                const std::array<int, 3>& halvings) {
+    constexpr int kSide = 8;
+    openvdb::CoordBBox box = coarse.controlPoints->evalActiveVoxelBoundingBox(),
+                       other = fine.controlPoints->evalActiveVoxelBoundingBox();
+    if (!other.empty()) {
+        box.expand(halved(other.min(), halvings));
+        box.expand(halved(other.max(), halvings));
+    }
+    std::vector<Coord> origins;
+    if (box.empty()) return origins;
+    const Coord low = box.min() & ~(kSide - 1);
+    for (int x = low.x(); x <= box.max().x(); x += kSide)
+        for (int y = low.y(); y <= box.max().y(); y += kSide)
+            for (int z = low.z(); z <= box.max().z(); z += kSide) origins.emplace_back(x, y, z);
+    return origins;
+}
+
+// Calls each(cell) for the cells that a lattice point is a corner of.
+template <class Each>
+void forCellsAt(const Coord& corner, const Each& each) {
+    for (int n = 0; n < 8; ++n) each(corner.offsetBy(-(n >> 2 & 1), -(n >> 1 & 1), -(n & 1)));
+}
+
+}  // namespace
+
+AdaptiveRegions::AdaptiveRegions(const Length& tolerance, const StepOrder& order)
+    : asked_(tolerance), order_(order) {}
+
+std::array<int, 3> AdaptiveRegions::halvingsTo(std::size_t level) const {
+    std::array<int, 3> to = order_.halvings(order_.stepOf(static_cast<int>(level)));
+    const std::array<int, 3> from = order_.halvings(order_.stepOf(static_cast<int>(level) - 1));
+    for (std::size_t axis = 0; axis < 3; ++axis) to[axis] -= from[axis];
+    return to;
+}
+
+void AdaptiveRegions::see(const DrawnLevel& level, const TriangleMesh& mesh, const Progress& progress) {
+    assert(order_.levelOf(level.step) == static_cast<int>(seen_.size()));
+    const openvdb::math::Transform& lattice = level.field.transform();
+    if (seen_.empty()) {
+        const double voxel = shortestVoxel(lattice);
+        tolerance_ = asked_.unit == Length::Unit::voxels ? asked_.value * voxel : asked_.value;
+        level0_.emplace(mesh, voxel);
+        field0_ = level.field;
+        seen_.push_back({lattice.copy(), Cells()});
+    } else {
+        progress("where a finer level is needed", 0);
+        seen_.push_back({lattice.copy(), badCells(seen_.size(), level.field, mesh, progress)});
+    }
+}
+
+Cells AdaptiveRegions::badCells(std::size_t level, const BSplineField& field, const TriangleMesh& mesh,
+                                const Progress& progress) const {
+    Cells bad;
+    openvdb::tree::ValueAccessor<Cells> cells(bad);
+    const SampledSurface surface(mesh, level0_->spacing());
+    for (const auto& far : {surface.farFrom(*level0_, kAim * tolerance_, false, progress),
+                            level0_->farFrom(surface, kAim * tolerance_, false, progress)})
+        for (const FarPlace& place : far.places) cells.setValueOn(cellAt(field.transform(), place.at));
+    for (const Coord& corner : turned(level, field, progress))
+        forCellsAt(corner, [&](const Coord& cell) { cells.setValueOn(cell); });
+    return bad;
+}
+
+// The lattice points that are inside one of the two fields and outside the other, and not near level 0's surface. Such a place has no
+// surface of its own where a hole is filled: its middle would stay filled while its walls come back.
+std::vector<Coord> AdaptiveRegions::turned(std::size_t level, const BSplineField& field,
+                                           const Progress& progress) const {
+    const std::array<int, 3> halvings = order_.halvings(order_.stepOf(static_cast<int>(level)));
+    const auto onFine = [&](const Coord& c) {
+        return Coord(c.x() << halvings[0], c.y() << halvings[1], c.z() << halvings[2]);
+    };
+    const std::vector<Coord> origins = blocksAround(field, field0_, halvings);
+    std::vector<std::vector<Coord>> found(origins.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, origins.size(), 16), [&](const auto& range) {
+        progress.check();
+        const openvdb::FloatGrid::ConstUnsafeAccessor coarse(field.controlPoints->tree()),
+            fine(field0_.controlPoints->tree());
+        const auto isTurned = [&](const Coord& c) {
+            const Coord there = onFine(c);
+            if ((coarse.getValue(c) < 0) == (fine.getValue(there) < 0)) return false;
+            if ((evaluate(field, c.asVec3d()) < 0) == (evaluate(field0_, there.asVec3d()) < 0)) return false;
+            const openvdb::Vec3d world = field.transform().indexToWorld(c);
+            return !level0_->isNear({world.x(), world.y(), world.z()}, kAim * tolerance_);
+        };
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            for (openvdb::Index n = 0; n < openvdb::BoolTree::LeafNodeType::SIZE; ++n) {
+                const Coord c = origins[i] + openvdb::BoolTree::LeafNodeType::offsetToLocalCoord(n);
+                if (isTurned(c)) found[i].push_back(c);
+            }
+    });
+    std::vector<Coord> all;
+    for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+AdaptiveRegions::Kept AdaptiveRegions::keptFor(int step) const {
+    Kept kept;
+    for (std::size_t l = 0; order_.stepOf(static_cast<int>(l)) < step; ++l) {
+        kept.push_back(seen_[l + 1].bad);
+        if (l > 0) kept[l].topologyUnion(parentsOf(kept[l - 1], halvingsTo(l + 1)));
+    }
+    return kept;
+}
+
+RegionsByStep AdaptiveRegions::regionsOf(const Kept& kept) const {
+    RegionsByStep regions;
+    for (std::size_t l = 0; l < kept.size(); ++l) {
+        if (kept[l].empty()) continue;
+        auto cells = std::make_shared<const CellDistance>(kept[l], halvingsTo(l + 1), latticeOf(l));
+        regions[order_.stepOf(static_cast<int>(l))].push_back(
+            {std::move(cells), 0, longestVoxel(latticeOf(l + 1))});
+    }
+    return regions;
+}
+
+std::size_t AdaptiveRegions::followedAt(const Kept& kept, const Point& place) const {
+    std::size_t level = 0;
+    while (level < kept.size() && !kept[level].isValueOn(cellAt(latticeOf(level + 1), place))) ++level;
+    return level;
+}
+
+// Whether anything is new.
+bool AdaptiveRegions::add(const Kept& before, Kept& kept, const Point& place) const {
+    const std::size_t followed = followedAt(before, place), finer = followed == 0 ? 0 : followed - 1;
+    const Coord cell = cellAt(latticeOf(finer + 1), place);
+    const int ring = followed == 0 ? 1 : 0;
+    bool isNew = false;
+    for (int x = -ring; x <= ring; ++x)
+        for (int y = -ring; y <= ring; ++y)
+            for (int z = -ring; z <= ring; ++z) {
+                Coord at = cell.offsetBy(x, y, z);
+                for (std::size_t l = finer; l < kept.size(); ++l) {
+                    if (l > finer) at = halved(at, halvingsTo(l + 1));
+                    isNew = isNew || !kept[l].isValueOn(at);
+                    kept[l].setValueOn(at);
+                }
+            }
+    return isNew;
+}
+
+bool AdaptiveRegions::widen(Kept& kept, const TriangleMesh& blended, AdaptiveSummary& summary,
+                            const Progress& progress) const {
+    const double aim = kAim * tolerance_;
+    const SampledSurface surface(blended, level0_->spacing());
+    std::vector<FarPlace> places;
+    summary.tolerance = tolerance_;
+    summary.farthest = 0;
+    for (const auto& far :
+         {surface.farFrom(*level0_, aim, true, progress), level0_->farFrom(surface, aim, true, progress)}) {
+        summary.farthest = std::max(summary.farthest, far.largest);
+        places.insert(places.end(), far.places.begin(), far.places.end());
+    }
+    summary.samplesBeyond = std::count_if(places.begin(), places.end(),
+                                          [&](const FarPlace& place) { return place.distance > tolerance_; });
+    ++summary.rounds;
+    if (places.empty() || summary.rounds == kMostRounds) return false;
+    bool isNew = false;
+    const Kept before = kept;  // what a place follows is what it was measured with
+    for (const FarPlace& place : places) isNew = add(before, kept, place.at) || isNew;
+    return isNew;
+}
+
+}  // namespace isowave::lod
