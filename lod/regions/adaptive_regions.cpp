@@ -11,8 +11,9 @@ namespace {
 
 using openvdb::Coord;
 
-// Samples stand for the surface around them: places are sought beyond a little less than the tolerance, at a spacing of half of
-// it. With 0.95 samples five times as dense found 1 % more than the tolerance; at a spacing of a voxel, twice the tolerance, 10 % more.
+// Samples stand for the surface around them: places are sought beyond a little less than the tolerance, at a spacing of half of it, within
+// an eighth and a half of a voxel. With 0.95 samples five times as dense found 1 % more than the tolerance; at a spacing of a voxel,
+// twice the tolerance, 10 % more.
 constexpr double kAim = 0.9;
 constexpr int kMostRounds = 8;
 
@@ -68,7 +69,7 @@ void AdaptiveRegions::see(const DrawnLevel& level, const TriangleMesh& mesh, con
     if (seen_.empty()) {
         const double voxel = shortestVoxel(lattice);
         tolerance_ = asked_.unit == Length::Unit::voxels ? asked_.value * voxel : asked_.value;
-        level0_.emplace(mesh, std::min(voxel, tolerance_) / 2);
+        level0_.emplace(mesh, std::clamp(tolerance_ / 2, voxel / 8, voxel / 2));
         field0_ = level.field;
         seen_.push_back({lattice.copy(), Cells()});
     } else {
