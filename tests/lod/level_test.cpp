@@ -344,18 +344,16 @@ Image waves(std::uint64_t seed) {
     });
 }
 
-// Level 1 limits level 2, be it asked for or not. Of each of these solids, limited by level 0 alone it is another mesh.
+// Level 1 limits level 2, be it asked for or not. Limited by level 0 alone this solid's is another mesh.
 TEST(Levels, AreTheSameWhateverIsAskedForBesideThem) {
-    for (const std::uint64_t seed : {0u, 2u}) {
-        const auto solid = [&] { return open(waves(seed), {.iso = 1}); };
-        const Level all = makeLadder(solid(), {.levels = StepRange{0, 2}}).levels.at(2),
-                    alone = makeLadder(solid(), {.levels = StepRange{2, 2}}).levels.at(0),
-                    mesh = makeLevel(solid(), 6);
-        EXPECT_EQ(alone.mesh.points, all.mesh.points) << seed;
-        EXPECT_EQ(alone.mesh.triangles, all.mesh.triangles) << seed;
-        EXPECT_EQ(mesh.mesh.points, all.mesh.points) << seed;
-        EXPECT_EQ(mesh.mesh.triangles, all.mesh.triangles) << seed;
-    }
+    const auto solid = [] { return open(waves(0), {.iso = 1}); };
+    const Level all = makeLadder(solid(), {.levels = StepRange{0, 2}}).levels.at(2),
+                alone = makeLadder(solid(), {.levels = StepRange{2, 2}}).levels.at(0),
+                mesh = makeLevel(solid(), 6);
+    EXPECT_EQ(alone.mesh.points, all.mesh.points);
+    EXPECT_EQ(alone.mesh.triangles, all.mesh.triangles);
+    EXPECT_EQ(mesh.mesh.points, all.mesh.points);
+    EXPECT_EQ(mesh.mesh.triangles, all.mesh.triangles);
 }
 
 // A solid of the zoo as a mask of -1 and 1, 4 voxels of background around it.
