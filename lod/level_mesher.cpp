@@ -17,6 +17,7 @@
 #include "isowave/error.h"
 #include "lod/option_checks.h"
 #include "lod/simplifier.h"
+#include "lod/voxel_edges.h"
 #include "polygonize/clip.h"
 #include "polygonize/features.h"
 #include "polygonize/knot_insertion.h"
@@ -182,9 +183,8 @@ void LevelMesher::rememberLevel0(const BSplineField& field, const TriangleMesh& 
     }
     if (options_.features) {
         const StageClock::Scope scope(clock_, "features");
-        const openvdb::Vec3d spacing = field.transform().voxelSize();
         FeatureOptions options;
-        options.spacing = std::min({spacing[0], spacing[1], spacing[2]});
+        options.spacing = shortestVoxel(field.transform());
         level0_->features = featuresOf(mesh, options, progress_);
     }
 }

@@ -48,15 +48,20 @@ void writeLeaves(const Tree& tree, std::ostream& out, bool toHalf) {
                                tbb::make_filter<std::string, void>(filter_mode::serial_in_order, write));
 }
 
-// Marks those that write in parallel by themselves.
-struct MadeWhenWritten {
-    virtual ~MadeWhenWritten() = default;
+template <class Grid>
+class ParallelGrid : public Grid {
+  public:
+    ParallelGrid() = default;
+    explicit ParallelGrid(const Grid& grid) : Grid(const_cast<Grid&>(grid), openvdb::ShallowCopy()) {}
+    void writeBuffers(std::ostream& out) const override {
+        writeLeaves(this->constTree(), out, this->saveFloatAsHalf());
+    }
 };
 
 // What Archive::write() asks a grid for first is a copy, to which it adds statistics and whose metadata it writes; then it reads the
 // grid itself, and writes its buffers last.
 template <class Grid>
-class GridToBeMade : public Grid, public MadeWhenWritten {
+class GridToBeMade : public ParallelGrid<Grid> {
   public:
     GridToBeMade(const std::string& name, std::function<typename Grid::Ptr()> make) : make_(std::move(make)) {
         this->setName(name);
@@ -68,7 +73,7 @@ class GridToBeMade : public Grid, public MadeWhenWritten {
         return std::as_const(*made).copyGrid();
     }
     void writeBuffers(std::ostream& out) const override {
-        writeLeaves(this->constTree(), out, this->saveFloatAsHalf());
+        ParallelGrid<Grid>::writeBuffers(out);
         put(std::make_shared<typename Grid::TreeType>(this->background()),
             openvdb::math::Transform::createLinearTransform());
     }
@@ -84,22 +89,19 @@ class GridToBeMade : public Grid, public MadeWhenWritten {
 };
 
 template <class Grid>
-class ParallelGrid : public Grid {
-  public:
-    explicit ParallelGrid(const Grid& grid) : Grid(const_cast<Grid&>(grid), openvdb::ShallowCopy()) {}
-    void writeBuffers(std::ostream& out) const override {
-        writeLeaves(this->constTree(), out, this->saveFloatAsHalf());
-    }
-};
+bool writesInParallel(const openvdb::GridBase& grid) {
+    return dynamic_cast<const ParallelGrid<Grid>*>(&grid) != nullptr;
+}
 
 }  // namespace
 
 openvdb::GridBase::ConstPtr writtenInParallel(const openvdb::GridBase::ConstPtr& grid) {
-    if (std::dynamic_pointer_cast<const MadeWhenWritten>(grid)) return grid;
-    if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid))
-        return std::make_shared<ParallelGrid<openvdb::FloatGrid>>(*floats);
-    if (const auto bools = openvdb::gridConstPtrCast<openvdb::BoolGrid>(grid))
-        return std::make_shared<ParallelGrid<openvdb::BoolGrid>>(*bools);
+    using openvdb::BoolGrid, openvdb::FloatGrid;
+    if (writesInParallel<FloatGrid>(*grid) || writesInParallel<BoolGrid>(*grid)) return grid;
+    if (const auto floats = openvdb::gridConstPtrCast<FloatGrid>(grid))
+        return std::make_shared<ParallelGrid<FloatGrid>>(*floats);
+    if (const auto bools = openvdb::gridConstPtrCast<BoolGrid>(grid))
+        return std::make_shared<ParallelGrid<BoolGrid>>(*bools);
     return grid;
 }
 

@@ -12,6 +12,7 @@
 #include "lod/memory.h"
 #include "lod/option_checks.h"
 #include "lod/regions/region_distance.h"
+#include "lod/voxel_edges.h"
 #include "polygonize/specks.h"
 #include "volume/blocks.h"
 #include "volume/cubic_weights.h"
@@ -301,8 +302,7 @@ Operand::Side ToolFunction::sideOf(const Coord& origin, int size) const {
 
 std::vector<Coord> ToolFunction::leaves(const Progress& progress) const {
     constexpr int kCube = 8 * kLeaf;
-    const double margin =
-        margin_ / std::min({lattice_->voxelSize().x(), lattice_->voxelSize().y(), lattice_->voxelSize().z()});
+    const double margin = margin_ / shortestVoxel(*lattice_);
     const openvdb::CoordBBox box = indexBox(bounds_, *lattice_, margin);
     const Coord low = box.min() & ~(kCube - 1);
     std::vector<Coord> origins;

@@ -10,6 +10,7 @@
 #include "lod/memory.h"
 #include "lod/source.h"
 #include "lod/steps.h"
+#include "lod/voxel_edges.h"
 #include "polygonize/polygonize.h"
 #include "wavelets/step_order.h"
 
@@ -20,11 +21,6 @@ constexpr const char* kFirstLevels = "levels.first";  // among the source's text
 constexpr int kMostTries = 40;                        // of a smaller bound
 constexpr double kLeastShrinking = 0.9;               // of the bound from one try to the next, at least
 constexpr double kMostShrinking = 0.5;
-
-double spacingOf(const BSplineField& field, bool largest) {
-    const openvdb::Vec3d s = field.transform().voxelSize();
-    return largest ? std::max({s.x(), s.y(), s.z()}) : std::min({s.x(), s.y(), s.z()});
-}
 
 void requirePositive(const std::optional<Length>& length, const char* option) {
     if (length && !(length->value > 0 && std::isfinite(length->value)))
@@ -61,10 +57,12 @@ class BoundedPacking {
         : field_(field), name_(name), progress_(progress), mesh_(polygonize(field, {}, progress)) {
         if (options.maxDistance) {
             const Length& d = *options.maxDistance;
-            maxDistance_ = d.unit == Length::Unit::world ? d.value : d.value * spacingOf(field, false);
+            maxDistance_ =
+                d.unit == Length::Unit::world ? d.value : d.value * lod::shortestVoxel(field.transform());
         }
         const Length first = options.bound.value_or(options.maxDistance.value_or(Length{}));
-        bound_ = first.unit == Length::Unit::voxels ? first.value : first.value / spacingOf(field, true);
+        bound_ = first.unit == Length::Unit::voxels ? first.value
+                                                    : first.value / lod::longestVoxel(field.transform());
     }
 
     compress::PackedBytes run(compress::PackOptions options, PackReport& report) {

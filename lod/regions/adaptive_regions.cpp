@@ -1,10 +1,11 @@
 #include "lod/regions/adaptive_regions.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+
+#include "lod/voxel_edges.h"
+#include "volume/blocks.h"
 
 namespace isowave::lod {
 namespace {
@@ -16,33 +17,22 @@ using openvdb::Coord;
 // twice the tolerance, 10 % more.
 constexpr double kAim = 0.9;
 constexpr int kMostRounds = 8;
-
-double shortestVoxel(const openvdb::math::Transform& lattice) {
-    const openvdb::Vec3d spacing = lattice.voxelSize();
-    return std::min({spacing.x(), spacing.y(), spacing.z()});
-}
+constexpr const char* kStage = "where a finer level is needed";
 
 Coord halved(const Coord& c, const std::array<int, 3>& halvings) {
     return {c.x() >> halvings[0], c.y() >> halvings[1], c.z() >> halvings[2]};
 }
 
-// The low corners of blocks of 8^3 points of a coarse lattice that hold all control points of both fields.
-std::vector<Coord> blocksAround(const BSplineField& coarse, const BSplineField& fine,
-                                const std::array<int, 3>& halvings) {
-    constexpr int kSide = 8;
+// Of the coarse lattice: all control points of both fields.
+openvdb::CoordBBox boxOf(const BSplineField& coarse, const BSplineField& fine,
+                         const std::array<int, 3>& halvings) {
     openvdb::CoordBBox box = coarse.controlPoints->evalActiveVoxelBoundingBox(),
                        other = fine.controlPoints->evalActiveVoxelBoundingBox();
     if (!other.empty()) {
         box.expand(halved(other.min(), halvings));
         box.expand(halved(other.max(), halvings));
     }
-    std::vector<Coord> origins;
-    if (box.empty()) return origins;
-    const Coord low = box.min() & ~(kSide - 1);
-    for (int x = low.x(); x <= box.max().x(); x += kSide)
-        for (int y = low.y(); y <= box.max().y(); y += kSide)
-            for (int z = low.z(); z <= box.max().z(); z += kSide) origins.emplace_back(x, y, z);
-    return origins;
+    return box;
 }
 
 // Calls each(cell) for the cells that a lattice point is a corner of.
@@ -73,19 +63,29 @@ void AdaptiveRegions::see(const DrawnLevel& level, const TriangleMesh& mesh, con
         field0_ = level.field;
         seen_.push_back({lattice.copy(), Cells()});
     } else {
-        progress("where a finer level is needed", 0);
+        progress(kStage, 0);
         seen_.push_back({lattice.copy(), badCells(seen_.size(), level.field, mesh, progress)});
     }
+}
+
+// From a level's surface to level 0's, and back.
+SampledSurface::Far AdaptiveRegions::apart(const TriangleMesh& mesh, bool howFar,
+                                           const Progress& progress) const {
+    const double aim = kAim * tolerance_;
+    const SampledSurface surface(mesh, level0_->spacing());
+    SampledSurface::Far all = surface.farFrom(*level0_, aim, howFar, progress);
+    const SampledSurface::Far back = level0_->farFrom(surface, aim, howFar, progress);
+    all.places.insert(all.places.end(), back.places.begin(), back.places.end());
+    all.largest = std::max(all.largest, back.largest);
+    return all;
 }
 
 Cells AdaptiveRegions::badCells(std::size_t level, const BSplineField& field, const TriangleMesh& mesh,
                                 const Progress& progress) const {
     Cells bad;
     openvdb::tree::ValueAccessor<Cells> cells(bad);
-    const SampledSurface surface(mesh, level0_->spacing());
-    for (const auto& far : {surface.farFrom(*level0_, kAim * tolerance_, false, progress),
-                            level0_->farFrom(surface, kAim * tolerance_, false, progress)})
-        for (const FarPlace& place : far.places) cells.setValueOn(cellAt(field.transform(), place.at));
+    for (const FarPlace& place : apart(mesh, false, progress).places)
+        cells.setValueOn(cellAt(field.transform(), place.at));
     for (const Coord& corner : turned(level, field, progress))
         forCellsAt(corner, [&](const Coord& cell) { cells.setValueOn(cell); });
     return bad;
@@ -99,27 +99,36 @@ std::vector<Coord> AdaptiveRegions::turned(std::size_t level, const BSplineField
     const auto onFine = [&](const Coord& c) {
         return Coord(c.x() << halvings[0], c.y() << halvings[1], c.z() << halvings[2]);
     };
-    const std::vector<Coord> origins = blocksAround(field, field0_, halvings);
-    std::vector<std::vector<Coord>> found(origins.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, origins.size(), 16), [&](const auto& range) {
-        progress.check();
-        const openvdb::FloatGrid::ConstUnsafeAccessor coarse(field.controlPoints->tree()),
-            fine(field0_.controlPoints->tree());
-        const auto isTurned = [&](const Coord& c) {
-            const Coord there = onFine(c);
-            if ((coarse.getValue(c) < 0) == (fine.getValue(there) < 0)) return false;
-            if ((evaluate(field, c.asVec3d()) < 0) == (evaluate(field0_, there.asVec3d()) < 0)) return false;
-            const openvdb::Vec3d world = field.transform().indexToWorld(c);
-            return !level0_->isNear({world.x(), world.y(), world.z()}, kAim * tolerance_);
-        };
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-            for (openvdb::Index n = 0; n < openvdb::BoolTree::LeafNodeType::SIZE; ++n) {
-                const Coord c = origins[i] + openvdb::BoolTree::LeafNodeType::offsetToLocalCoord(n);
-                if (isTurned(c)) found[i].push_back(c);
-            }
-    });
+    const openvdb::CoordBBox box = boxOf(field, field0_, halvings);
     std::vector<Coord> all;
-    for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
+    if (box.empty()) return all;
+    struct Signs {
+        openvdb::FloatGrid::ConstUnsafeAccessor coarse, fine;
+    };
+    const auto isTurned = [&](const Coord& c, Signs& signs) {
+        const Coord there = onFine(c);
+        if ((signs.coarse.getValue(c) < 0) == (signs.fine.getValue(there) < 0)) return false;
+        if ((evaluate(field, c.asVec3d()) < 0) == (evaluate(field0_, there.asVec3d()) < 0)) return false;
+        const openvdb::Vec3d world = field.transform().indexToWorld(c);
+        return !level0_->isNear({world.x(), world.y(), world.z()}, kAim * tolerance_);
+    };
+    const auto turnedOf = [&](const Coord& origin, Signs& signs) {
+        std::vector<Coord> found;
+        for (openvdb::Index n = 0; n < openvdb::BoolTree::LeafNodeType::SIZE; ++n)
+            if (const Coord c = origin + openvdb::BoolTree::LeafNodeType::offsetToLocalCoord(n);
+                isTurned(c, signs))
+                found.push_back(c);
+        return found;
+    };
+    forEachBlock<std::vector<Coord>>(
+        box, progress, kStage, turnedOf,
+        [&] {
+            return Signs{openvdb::FloatGrid::ConstUnsafeAccessor(field.controlPoints->tree()),
+                         openvdb::FloatGrid::ConstUnsafeAccessor(field0_.controlPoints->tree())};
+        },
+        [&](const Coord&, const std::vector<Coord>& found) {
+            all.insert(all.end(), found.begin(), found.end());
+        });
     return all;
 }
 
@@ -170,16 +179,9 @@ bool AdaptiveRegions::add(const Kept& before, Kept& kept, const Point& place) co
 
 bool AdaptiveRegions::widen(Kept& kept, const TriangleMesh& blended, AdaptiveSummary& summary,
                             const Progress& progress) const {
-    const double aim = kAim * tolerance_;
-    const SampledSurface surface(blended, level0_->spacing());
-    std::vector<FarPlace> places;
+    const auto [places, farthest] = apart(blended, true, progress);
     summary.tolerance = tolerance_;
-    summary.farthest = 0;
-    for (const auto& far :
-         {surface.farFrom(*level0_, aim, true, progress), level0_->farFrom(surface, aim, true, progress)}) {
-        summary.farthest = std::max(summary.farthest, far.largest);
-        places.insert(places.end(), far.places.begin(), far.places.end());
-    }
+    summary.farthest = farthest;
     summary.samplesBeyond = std::count_if(places.begin(), places.end(),
                                           [&](const FarPlace& place) { return place.distance > tolerance_; });
     ++summary.rounds;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "isowave/error.h"
+#include "lod/voxel_edges.h"
 
 namespace isowave::lod {
 namespace {

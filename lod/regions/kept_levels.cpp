@@ -20,11 +20,6 @@ int samplesAfter(int samples, const Halvings& halvings) {
 
 }  // namespace
 
-double longestVoxel(const openvdb::math::Transform& lattice) {
-    const openvdb::Vec3d spacing = lattice.voxelSize();
-    return std::max({spacing.x(), spacing.y(), spacing.z()});
-}
-
 void KeptLevels::remember(DrawnLevel level) {
     openvdb::FloatGrid::Ptr& points = level.field.controlPoints;
     if (points->tree().hasActiveTiles()) {

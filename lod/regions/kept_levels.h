@@ -47,7 +47,4 @@ class KeptLevels {
     std::map<int, DrawnLevel> kept_;  // by step
 };
 
-// The longest edge of a voxel, world units.
-double longestVoxel(const openvdb::math::Transform& lattice);
-
 }  // namespace isowave::lod

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <numeric>
 
 #include "isowave/error.h"
 
@@ -92,6 +93,10 @@ struct SlabbedField::Reached {
     std::vector<std::int64_t> details;  // by step
     std::vector<int> slabs;             // that each step was made in
     BSplineField field;
+
+    std::int64_t detailsStored() const {
+        return std::accumulate(details.begin(), details.end(), std::int64_t{0});
+    }
 };
 
 SlabbedField::Reached SlabbedField::descendInSlabs(
@@ -157,7 +162,7 @@ wavelets::Descent SlabbedField::descend(const wavelets::AnalyseOptions& options,
         wavelets::descend(std::move(reached.field), rest, progress, [&](int step, const BSplineField& field) {
             if (onStep && step != here) onStep(step, field);
         });
-    for (const std::int64_t count : reached.details) descent.coefficientsStored += count;
+    descent.coefficientsStored += reached.detailsStored();
     return descent;
 }
 
@@ -165,7 +170,8 @@ SlabbedField::Apart SlabbedField::takeApart(const StepOrder& order, const Progre
     const Reached reached = descendInSlabs(
         {.order = order}, [](int) { return false; }, {}, true, progress);
     Apart apart{wavelets::analyse(reached.field, {.order = order, .from = reached.halved}, progress),
-                reached.slabs, reached.details};
+                reached.slabs, reached.detailsStored()};
+    apart.stored += apart.pyramid.coefficientsStored();
     std::vector<wavelets::Step> steps;
     for (int step = 0; step < reached.halved.step; ++step)
         steps.push_back({order.axisAfter(step), nullptr, nullptr});
@@ -203,12 +209,7 @@ PyramidCounts SlabbedField::analyseTo(const fs::path& path, const StepOrder& ord
     apart.pyramid.source = std::move(source);
     progress("writing", 0);
     wavelets::writePyramid(path, apart.pyramid, stepsOf(apart));
-    std::int64_t stored = static_cast<std::int64_t>(apart.pyramid.coarsest.shape->activeVoxelCount());
-    for (std::size_t step = 0; step < apart.pyramid.steps.size(); ++step)
-        stored += step < apart.details.size()
-                      ? apart.details[step]
-                      : static_cast<std::int64_t>(apart.pyramid.steps[step].details->activeVoxelCount());
-    return {apart.pyramid.stepCount(), extent_.controlPoints, stored};
+    return {apart.pyramid.stepCount(), extent_.controlPoints, apart.stored};
 }
 
 }  // namespace isowave::lod

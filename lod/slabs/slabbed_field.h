@@ -75,9 +75,9 @@ class SlabbedField {
     BSplineField part(int slab) const;
     struct Reached;  // how far slabs came down
     struct Apart {
-        wavelets::Pyramid pyramid;          // its finest steps lie in the folder
-        std::vector<int> slabs;             // of each of these
-        std::vector<std::int64_t> details;  // of each
+        wavelets::Pyramid pyramid;  // its finest steps lie in the folder
+        std::vector<int> slabs;     // of each of these
+        std::int64_t stored = 0;    // coefficients of all steps
     };
     Apart takeApart(const StepOrder& order, const Progress& progress) const;
     // Those that lie in the folder. apart outlives it.
