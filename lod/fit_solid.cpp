@@ -73,18 +73,21 @@ void fit(Solid::State& solid, const Fitting& fitting, const Samples& samples, do
                           ? fitBinary(nodes, fitting.binary, &report, progress)
                           : fitMask(nodes, fitting.mask, &report, progress);
     } else {
-        const openvdb::FloatGrid::Ptr grid = [&] {
+        openvdb::FloatGrid::Ptr grid = [&] {
             const StageClock::Scope scope(clock, "distance");
             return samples.distance();
         }();
         allow(samples.bytesPerBandPoint, grid->activeVoxelCount());
         const StageClock::Scope scope(clock, "fit");
         DistanceFitOptions options = fitting.distance;
-        if (samples.walls)
+        if (samples.walls) {
             options.adjust = [&](BSplineField& field, const openvdb::Coord& shift) {
                 walls = samples.walls(field, *grid, shift);
             };
-        solid.field = fitDistance(*grid, options, &report, progress);
+            solid.field = fitDistance(*grid, options, &report, progress);
+        } else {
+            solid.field = fitDistance(std::move(grid), options, &report, progress);
+        }
     }
     solid.fit = summaryOf(fitting, report);
     solid.fit->walls = walls;

@@ -2,9 +2,13 @@
 
 #include <openvdb/tree/LeafManager.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
+#include <vector>
 
 #include "isowave/error.h"
 #include "volume/fit/known.h"
@@ -111,26 +115,66 @@ Mask knownOf(const NodeCollection& nodes) {
     return knownAround(Mask(nodes.grid->constTree(), false, openvdb::TopologyCopy()));
 }
 
-// Distances, quasi-interpolated on I: on each axis c = (8 v_i - v_{i-1} - v_{i+1})/6, exact for cubics.
-BSplineField interpolatedDistances(const openvdb::FloatGrid& distance, const Mask& known,
-                                   const openvdb::Coord& shift, const DistanceFitOptions& options) {
-    const openvdb::FloatTree& d = distance.constTree();
-    const auto makeInside = [&d, &shift] { return Signs(d, shift); };
-    BSplineField field = makeField(makeShape(known, d, shift, makeInside), options.K,
-                                   *shiftedTransform(distance.transform(), shift));
+// On each axis c = (8 v_i - v_{i-1} - v_{i+1})/6, exact for cubics.
+void interpolate(const openvdb::FloatTree& distance, const openvdb::Coord& shift,
+                 const DistanceFitOptions& options, FloatLeaf& leaf) {
     const double w = options.halfWidth, scale = options.K / w;
-    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
-    leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
-        ConstAccessor<openvdb::FloatTree> accessor(d);
-        PaddedLeaf<double, 1, 1> v;
-        v.gather(accessor, leaf.origin() - shift);
-        for (double& x : v.values) x = scale * std::clamp(x, -w, w);
-        std::array<double, 512> c;
-        filterThreeTaps(v, 8.0 / 6, -1.0 / 6, c);
-        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
-            leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
-    });
-    return field;
+    ConstAccessor<openvdb::FloatTree> accessor(distance);
+    PaddedLeaf<double, 1, 1> v;
+    v.gather(accessor, leaf.origin() - shift);
+    for (double& x : v.values) x = scale * std::clamp(x, -w, w);
+    std::array<double, 512> c;
+    filterThreeTaps(v, 8.0 / 6, -1.0 / 6, c);
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
+        leaf.setValueOnly(voxel.pos(), static_cast<float>(c[voxel.pos()]));
+}
+
+// Leaves one after the other along x, and where those with the same x begin and end.
+template <class Leaf>
+struct Layers {
+    std::vector<Leaf*> leaves;
+    std::vector<std::size_t> at{0};
+
+    explicit Layers(std::vector<Leaf*> all) : leaves(std::move(all)) {
+        const auto xOf = [](const Leaf* leaf) { return leaf->origin().x(); };
+        std::stable_sort(leaves.begin(), leaves.end(),
+                         [&](const Leaf* a, const Leaf* b) { return xOf(a) < xOf(b); });
+        for (std::size_t i = 1; i <= leaves.size(); ++i)
+            if (i == leaves.size() || xOf(leaves[i]) != xOf(leaves[i - 1])) at.push_back(i);
+    }
+};
+
+template <class Tree>
+auto leavesOf(Tree& tree) {
+    using Leaf = typename Tree::LeafNodeType;
+    std::vector<std::conditional_t<std::is_const_v<Tree>, const Leaf, Leaf>*> leaves;
+    tree.getNodes(leaves);
+    return leaves;
+}
+
+// Distances, quasi-interpolated on I. Layer by layer, and of those that are given up (null: none are) a leaf goes once no layer to
+// come looks at it: so they and the control points together take the memory of one of them.
+BSplineField interpolatedDistances(const openvdb::FloatGrid& distance, openvdb::FloatGrid* givenUp,
+                                   Mask known, const openvdb::Coord& shift,
+                                   const DistanceFitOptions& options) {
+    const openvdb::FloatTree& d = distance.constTree();
+    const Shape::Ptr shape = makeShape(known, d, shift, [&d, &shift] { return Signs(d, shift); });
+    known.clear();
+    const Layers layers(leavesOf(shape->constTree()));
+    std::vector<FloatLeafPtr> made(layers.leaves.size());
+    const Layers given(givenUp ? leavesOf(givenUp->tree()) : std::vector<FloatLeaf*>());
+    std::size_t gone = 0;
+    for (std::size_t layer = 1; layer < layers.at.size(); ++layer) {
+        const int x = layers.leaves[layers.at[layer - 1]]->origin().x() - shift.x();
+        for (; gone < given.leaves.size() && given.leaves[gone]->origin().x() < x - 8; ++gone)
+            delete givenUp->tree().stealNode<FloatLeaf>(given.leaves[gone]->origin(), d.background(), false);
+        tbb::parallel_for(layers.at[layer - 1], layers.at[layer], [&](std::size_t i) {
+            made[i] = makeLeaf(*layers.leaves[i], options.K);
+            interpolate(d, shift, options, *made[i]);
+        });
+    }
+    if (givenUp) givenUp->clear();
+    return fieldOfLeaves(shape, options.K, *shiftedTransform(distance.transform(), shift), std::move(made));
 }
 
 Mask knownOf(const openvdb::FloatGrid& distance, const DistanceFitOptions& options) {
@@ -154,16 +198,31 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
     return field;
 }
 
-BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
-                         FitReport* report, const Progress& progress) {
+namespace {
+
+BSplineField fitted(const openvdb::FloatGrid& distance, openvdb::FloatGrid* givenUp,
+                    const DistanceFitOptions& options, FitReport* report, const Progress& progress) {
     progress("fitting", 0);
     Mask known = knownOf(distance, options);
     const openvdb::Coord shift = moveOrigin(known);
-    BSplineField field = interpolatedDistances(distance, known, shift, options);
-    if (options.adjust) options.adjust(field, shift);
+    BSplineField field = interpolatedDistances(distance, givenUp, std::move(known), shift, options);
+    if (options.adjust && !givenUp) options.adjust(field, shift);
     const double w = options.halfWidth;
     finish(field, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, {}, report, progress);
     return field;
+}
+
+}  // namespace
+
+BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+                         FitReport* report, const Progress& progress) {
+    return fitted(distance, nullptr, options, report, progress);
+}
+
+BSplineField fitDistance(openvdb::FloatGrid::Ptr&& distance, const DistanceFitOptions& options,
+                         FitReport* report, const Progress& progress) {
+    const openvdb::FloatGrid::Ptr owned = std::move(distance);
+    return fitted(*owned, owned.get(), options, report, progress);
 }
 
 BSplineField fitBinaryPart(const NodeCollection& nodes, const BinaryFitOptions& options,
@@ -173,10 +232,11 @@ BSplineField fitBinaryPart(const NodeCollection& nodes, const BinaryFitOptions& 
     return part;
 }
 
-BSplineField fitDistancePart(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+BSplineField fitDistancePart(openvdb::FloatGrid::Ptr&& distance, const DistanceFitOptions& options,
                              const openvdb::CoordBBox& box, PartRepair& repair, const Progress& progress) {
+    const openvdb::FloatGrid::Ptr owned = std::move(distance);
     BSplineField part =
-        interpolatedDistances(distance, knownOf(distance, options), openvdb::Coord(0), options);
+        interpolatedDistances(*owned, owned.get(), knownOf(*owned, options), openvdb::Coord(0), options);
     const double w = options.halfWidth;
     repair =
         finishPart(part, kDistanceFloor / w, kDistanceTarget / w, options.mostRepairPasses, box, progress);

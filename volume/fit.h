@@ -46,20 +46,24 @@ BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& opti
 // |distance| < band; a node whose corner signs differ is always kept.
 BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options = {},
                          FitReport* report = nullptr, const Progress& progress = {});
+// The same where nobody wants the distances afterwards: they go as control points are made. options.adjust is not called.
+BSplineField fitDistance(openvdb::FloatGrid::Ptr&& distance, const DistanceFitOptions& options = {},
+                         FitReport* report = nullptr, const Progress& progress = {});
 
 // The same for a part of a solid, whose input is known some way beyond a box; in the box the result is the whole
 // solid's, but for the lattice's origin, which is not moved: what a part does not know.
 //
 // How far beyond, on each side: kFitReach lattice points, and one for each pass of the repair. The chain, from the box outwards: the
-// signs that are counted, 1, of control points 1, that a pass moves by those 1 beside them; quasi-interpolation 1 (smoothing 3);
-// what is known 4, of distances that crossings 4 away give, in leaves of 8.
-inline constexpr int kFitReach = 24;
+// signs that are counted, 1, of control points 1, that a pass moves by those 1 beside them. What is known there takes distances 3 away,
+// quasi-interpolation 1; a distance takes the crossings 4 away, whose edges and slopes end 2 farther: 11. (Binary: smoothing 3, known
+// 2, nodes 1: 8.) Cuts lie between leaves, and ends of the input must, too: to the next multiple of 8.
+inline constexpr int kFitReach = 16;
 // options.mostRepairPasses: as many as the input reaches beyond the box, less kFitReach. options.adjust is not called.
 // repair: what it did in the box, which is in whole leaves.
 BSplineField fitBinaryPart(const NodeCollection& nodes, const BinaryFitOptions& options,
                            const openvdb::CoordBBox& box, fitting::PartRepair& repair,
                            const Progress& progress = {});
-BSplineField fitDistancePart(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
+BSplineField fitDistancePart(openvdb::FloatGrid::Ptr&& distance, const DistanceFitOptions& options,
                              const openvdb::CoordBBox& box, fitting::PartRepair& repair,
                              const Progress& progress = {});
 

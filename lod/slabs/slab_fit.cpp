@@ -23,9 +23,8 @@ BSplineField fitPart(ImageStream& stream, const SlabFitPlan& plan, const LeafBox
         case FitMethod::distance: {
             DistanceFitOptions options = plan.fitting.distance;
             options.mostRepairPasses = most;
-            const auto distance =
-                distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
-            return fitDistancePart(*distance, options, box, repair, progress);
+            auto distance = distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
+            return fitDistancePart(std::move(distance), options, box, repair, progress);
         }
         case FitMethod::binary: {
             BinaryFitOptions options = plan.fitting.binary;
@@ -45,7 +44,7 @@ bool knowsOutside(const Shape& shape) {
     return false;
 }
 
-// Slices z0 <= z < z1 that a slab reads for so many passes; z0 is a multiple of 8.
+// Slices z0 <= z < z1 that a slab reads for so many passes; multiples of 8, but for the image's end.
 struct Slices {
     std::int64_t z0, z1;
 };
@@ -53,7 +52,7 @@ Slices slicesOf(const SlabFitPlan& plan, int slab, int passes) {
     const std::int64_t reach = kFitReach + passes;
     const LeafBox box = plan.cuts.box(slab);
     const std::int64_t low = std::max<std::int64_t>(0, box.min().z() - reach) & ~std::int64_t{7};
-    return {low, std::min<std::int64_t>(plan.depth, box.max().z() + 1 + reach)};
+    return {low, std::min<std::int64_t>(plan.depth, (box.max().z() + 8 + reach) & ~std::int64_t{7})};
 }
 
 }  // namespace
@@ -79,7 +78,15 @@ SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPla
     return told;
 }
 
+bool needsMorePasses(const SlabFitted& slab, const SlabFitPlan& plan, int passes) {
+    const std::vector<std::int64_t>& repaired = slab.repair.repaired;
+    return passes < passesOf(plan.fitting) && static_cast<int>(repaired.size()) == passes &&
+           !repaired.empty() && repaired.back() != 0;
+}
+
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes) {
+    for (const SlabFitted& slab : slabs)
+        if (needsMorePasses(slab, plan, passes)) return std::nullopt;
     FitReport report;
     const Fitting& fitting = plan.fitting;
     const bool byDistance = fitting.method == FitMethod::distance;

@@ -1,8 +1,8 @@
 // Slabs of an image -> parts of its field, each from its own slices and some beyond them.
 //
 // A slab reads kFitReach slices more on either side, and one for each pass of the repair that it makes. How many passes the whole
-// image takes is known once all slabs are there: as many as the first pass in which none of them changed anything. Where the slabs
-// made fewer, they are fitted once more, with more slices.
+// image takes is known once all slabs are there: as many as the first pass in which none of them changed anything. Where a slab
+// turns out to need more than it was given, all are fitted once more, with more slices.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,6 @@ struct SlabFitPlan {
     std::function<void(std::int64_t points)> allow = {};  // of distanceFromImage()
 };
 
-inline constexpr int kFirstPasses = 16;  // of the repair. Seen: 5 to 12 for CT, 20 for white noise
-
 // Of a part: what all parts together need.
 struct SlabFitted {
     fitting::PartRepair repair;
@@ -46,7 +44,11 @@ struct SlabFitted {
 SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
                    const Progress& progress);
 
-// What the whole image's fit reports; nothing where it takes more passes than these slabs made.
+// Whether the last pass still changed something, and might not have been the last.
+bool needsMorePasses(const SlabFitted& slab, const SlabFitPlan& plan, int passes);
+
+// What the whole image's fit reports; nothing where it takes more passes than these slabs made. REQUIRES: all slabs, or one
+// that needs more passes.
 std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes);
 
 // How the origin moves.

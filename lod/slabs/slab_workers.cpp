@@ -5,6 +5,7 @@ namespace isowave::lod {
 std::vector<SlabFitted> SlabsInTurn::fit(const SlabFitPlan& plan, int passes, const Progress& progress) {
     std::vector<SlabFitted> told;
     for (int slab = 0; slab < plan.cuts.count(); ++slab) {
+        if (!told.empty() && needsMorePasses(told.back(), plan, passes)) break;
         progress("fitting", double(slab) / plan.cuts.count());
         told.push_back(fitSlab(store_, *stream_, plan, slab, passes, progress));
     }

@@ -15,7 +15,9 @@ namespace isowave::lod {
 class SlabWorkers {
   public:
     virtual ~SlabWorkers() = default;
-    // All slabs: the parts lie in the store, what is told comes back, in order.
+    // Of the repair, what to try first. Seen: 1 to 4 for smooth images, 5 to 12 for CT, 20 for white noise.
+    virtual int firstPasses() const = 0;
+    // All slabs: the parts lie in the store, what is told comes back, in order. May end with the first that needs more passes.
     virtual std::vector<SlabFitted> fit(const SlabFitPlan& plan, int passes, const Progress& progress) = 0;
     virtual std::vector<SlabHalved> halve(const SlabHalving& halving, const Progress& progress) = 0;
     // The image is not needed any more.
@@ -26,6 +28,7 @@ class SlabWorkers {
 class SlabsInTurn : public SlabWorkers {
   public:
     SlabsInTurn(ImageStream stream, const SlabStore& store) : stream_(std::move(stream)), store_(store) {}
+    int firstPasses() const override { return 4; }
     std::vector<SlabFitted> fit(const SlabFitPlan& plan, int passes, const Progress& progress) override;
     std::vector<SlabHalved> halve(const SlabHalving& halving, const Progress& progress) override;
     void endFit() override { stream_.reset(); }
@@ -41,6 +44,8 @@ using SlabMap =
 class SlabsByMap : public SlabWorkers {
   public:
     SlabsByMap(SlabMap map, SlabJob job) : map_(std::move(map)), job_(std::move(job)) {}
+    // All slabs are fitted at once, and again where one of them needs more.
+    int firstPasses() const override { return 16; }
     std::vector<SlabFitted> fit(const SlabFitPlan& plan, int passes, const Progress& progress) override;
     std::vector<SlabHalved> halve(const SlabHalving& halving, const Progress& progress) override;
 

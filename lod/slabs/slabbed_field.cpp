@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <numeric>
 
@@ -21,10 +22,10 @@ SlabCuts moved(SlabCuts cuts, const openvdb::Coord& shift) {
     return cuts;
 }
 
-// Of the repair: as many as the first slabs turned out to need.
+// Of the repair: as many as the slabs turned out to need.
 template <class FitAll>
-FitReport withEnoughPasses(const FitAll& fitAll) {
-    for (int passes = kFirstPasses;; passes *= 2)
+FitReport withEnoughPasses(int first, const FitAll& fitAll) {
+    for (int passes = first;; passes = std::max(16, 2 * passes))
         if (const std::optional<FitReport> report = fitAll(passes)) return *report;
 }
 
@@ -59,7 +60,7 @@ SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int colu
     else
         workers_ = std::make_unique<SlabsInTurn>(std::move(stream), store_);
     std::vector<SlabFitted> slabs;
-    report_ = withEnoughPasses([&](int passes) {
+    report_ = withEnoughPasses(workers_->firstPasses(), [&](int passes) {
         slabs = workers_->fit(plan_, passes, progress);
         return reportOf(slabs, plan_, passes);
     });

@@ -122,6 +122,16 @@ TEST_F(Slabs, AreFittedAgainWhereTheRepairReachesFartherThanTheySaw) {
     expectSame(image, {.iso = 0, .fit = FitMethod::binary}, {4});
 }
 
+TEST_F(Slabs, AreFittedAgainWhereOnlyTheLastOneNeedsMorePasses) {
+    std::mt19937 random(7);
+    const Image image = imageOf({24, 20, 96}, [&](int x, int y, int z) {
+        if (z > 80) return random() % 2 ? 100L : -100L;
+        return std::lround(20 * std::clamp(7 - std::hypot(x - 11.6, y - 9.3), -4.0, 4.0));
+    });
+    EXPECT_GT(open(image, {.iso = 0}).fit()->repairPasses, 4) << "the first slabs are tried with fewer";
+    expectSame(image, {.iso = 0}, {3, 6});
+}
+
 void expectSameLadders(const Ladder& parts, const Ladder& whole) {
     ASSERT_EQ(parts.levels.size(), whole.levels.size());
     for (std::size_t i = 0; i < whole.levels.size(); ++i) {

@@ -224,6 +224,23 @@ TEST(FitDistance, ZeroSetIsWithinThreeHundredthsOfAVoxelAndConverges) {
     }
 }
 
+TEST(FitDistance, GivesTheSameFieldWhereDistancesAreGivenUp) {
+    for (const Ladder& ladder : ladders()) {
+        const auto distance = [&](const Vec3d& p) { return 16 * ladder.distance(p / 16.0); };
+        const int half = static_cast<int>(16 * ladder.half) + 5;
+        const auto grid = distanceFromFunction(distance, CoordBBox(-half, -half, -half, half, half, half), 4);
+        openvdb::FloatGrid::Ptr copy = grid->deepCopy();
+        FitReport kept, given;
+        const BSplineField field = fitDistance(*grid, {}, &kept);
+        const BSplineField same = fitDistance(std::move(copy), {}, &given);
+        EXPECT_EQ(copy, nullptr);
+        EXPECT_EQ(given.repaired, kept.repaired);
+        ASSERT_TRUE(same.controlPoints->tree().hasSameTopology(field.controlPoints->tree())) << ladder.name;
+        for (auto c = field.controlPoints->cbeginValueAll(); c; ++c)
+            ASSERT_EQ(*c, same.controlPoints->tree().getValue(c.getCoord())) << ladder.name;
+    }
+}
+
 TEST(FitDistance, IsFarCloserThanTheBinaryFit) {
     const auto solid = zoo::cadSolids()[0];
     const auto distance = solid.distance;

@@ -97,23 +97,39 @@ openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& t
 }
 
 BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transform& transform) {
+    BSplineField field = fieldOfLeaves(std::move(shape), K, transform, {});
+    const auto k = static_cast<float>(K);
+    const openvdb::BoolTree& signs = field.shape->tree();
+    field.controlPoints->setTree(std::make_shared<openvdb::FloatTree>(signs, k, k, openvdb::TopologyCopy()));
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
+    leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
+        fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
+    });
+    fillInsideTiles(field.controlPoints->tree(), signs, -1, -k);
+    return field;
+}
+
+BSplineField fieldOfLeaves(Shape::Ptr shape, double K, const openvdb::math::Transform& transform,
+                           std::vector<FloatLeafPtr> leaves) {
     BSplineField field;
     field.K = K;
     field.shape = std::move(shape);
     field.shape->setTransform(transform.copy());
     const auto k = static_cast<float>(K);
     field.controlPoints = openvdb::FloatGrid::create(k);
-    field.controlPoints->setTree(
-        std::make_shared<openvdb::FloatTree>(field.shape->tree(), k, k, openvdb::TopologyCopy()));
     field.controlPoints->setTransform(transform.copy());
     field.controlPoints->setName("field");
-    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
-    const openvdb::BoolTree& signs = field.shape->tree();
-    leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
-        fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
-    });
-    fillInsideTiles(field.controlPoints->tree(), signs, -1, -k);
+    hangLeaves(leaves, field.controlPoints->tree());
+    fillInsideTiles(field.controlPoints->tree(), field.shape->constTree(), -1, -k);
     return field;
+}
+
+FloatLeafPtr makeLeaf(const openvdb::BoolTree::LeafNodeType& shape, double K) {
+    const auto k = static_cast<float>(K);
+    auto leaf = std::make_unique<FloatLeaf>(shape.origin(), k, false);
+    leaf->setValueMask(shape.getValueMask());
+    fillBySign(insideWordsOf(shape), k, leaf->buffer().data());
+    return leaf;
 }
 
 }  // namespace isowave::fitting

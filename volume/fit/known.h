@@ -9,7 +9,9 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <memory>
+#include <vector>
 
+#include "volume/distance/leaves.h"
 #include "volume/field.h"
 #include "volume/leaf_words.h"
 #include "volume/tiles.h"
@@ -74,5 +76,9 @@ Shape::Ptr makeShape(const openvdb::MaskTree& known, const Source& source, const
 
 // Control points of +-K by sign everywhere, active on I.
 BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transform& transform);
+// The same field of leaves that were made by themselves: makeLeaf(), then what their known control points are.
+BSplineField fieldOfLeaves(Shape::Ptr shape, double K, const openvdb::math::Transform& transform,
+                           std::vector<FloatLeafPtr> leaves);
+FloatLeafPtr makeLeaf(const openvdb::BoolTree::LeafNodeType& shape, double K);
 
 }  // namespace isowave::fitting
