@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "base/number_text.h"
 #include "hold/plug.h"
 #include "hold/topology_candidates.h"
 #include "hold/until_stopped.h"
@@ -30,8 +31,12 @@ std::int64_t countOf(const SolidCounts& counts, What what) {
 std::optional<std::int64_t> limitOf(const SolidLimits& limits, What what) {
     return what == What::part ? limits.parts : what == What::handle ? limits.handles : limits.cavities;
 }
-const char* nameOf(What what) {
-    return what == What::part ? "parts" : what == What::handle ? "handles" : "cavities";
+std::string countText(std::int64_t count, What what) {
+    return counted(count,
+                   what == What::part     ? "part"
+                   : what == What::handle ? "handle"
+                                          : "cavity",
+                   what == What::cavity ? "cavities" : "");
 }
 
 // An option that was tried and does what it should.
@@ -251,10 +256,14 @@ class Limiter {
         std::string text;
         for (const What what : kOrder)
             if (tooMany(what) > 0)
-                text += fmt::format("{}{} {} where {} are allowed", text.empty() ? "" : ", ",
-                                    countOf(result_.after, what), nameOf(what), *limitOf(limits_, what));
-        return text + fmt::format(": {} cuts and fills were made, {} others change more than they should",
-                                  result_.edits.size(), useless_.size());
+                text += fmt::format("{}{} where {} {} allowed", text.empty() ? "" : ", ",
+                                    countText(countOf(result_.after, what), what), *limitOf(limits_, what),
+                                    *limitOf(limits_, what) == 1 ? "is" : "are");
+        const auto tried = static_cast<std::int64_t>(useless_.size());
+        return text + fmt::format("; {} made, {} more would change more than they should",
+                                  counted(static_cast<std::int64_t>(result_.edits.size()), "cut or fill",
+                                          "cuts and fills"),
+                                  tried);
     }
 
     BSplineField& field_;

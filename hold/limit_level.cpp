@@ -1,5 +1,7 @@
 #include "hold/limit_level.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "hold/cut_or_fill.h"
@@ -46,8 +48,14 @@ void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, doub
                                 {edit.at[0], edit.at[1], edit.at[2]},
                                 edit.volume});
     if (edits.met) return;
-    report.limitsMissed = edits.why;
-    progress.say("limits on the topology are missed: " + edits.why);
+    missLimits(report, edits.why, progress);
+}
+
+void missLimits(LevelReport& report, const std::string& why, const Progress& progress) {
+    report.limitsMissed = why;
+    progress.say(fmt::format(
+        "{}: limits on the topology are missed: {}",
+        report.level ? fmt::format("level {}", *report.level) : fmt::format("step {}", report.step), why));
 }
 
 }  // namespace isowave

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "hold/solid_limits.h"
 #include "isowave/ladder.h"
@@ -18,5 +19,8 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 // mesh as it is.
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                 LevelReport& report, const Progress& progress);
+
+// Puts into the report, and says, why the level has more than it may.
+void missLimits(LevelReport& report, const std::string& why, const Progress& progress);
 
 }  // namespace isowave

@@ -372,14 +372,16 @@ void LevelMesher::limit(Draft& draft) {
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
     const bool asked = options_.maxGenus || options_.maxParts;
     if (falls && !asked && excess(counts, *before_) > kMostEdits) {
-        report.limitsMissed = fmt::format(
-            "{} parts, handles and cavities more than the level before, too many to cut and fill unasked; "
-            "give --max-genus or --max-parts",
-            excess(counts, *before_));
+        missLimits(report,
+                   fmt::format("{} parts, handles and cavities more than the level before, too many to cut "
+                               "and fill unasked; "
+                               "give --max-genus or --max-parts",
+                               excess(counts, *before_)),
+                   progress_);
         return;
     }
     if (level.iso != 0) {
-        report.limitsMissed = "cuts and fills are made where the iso-value is 0";
+        missLimits(report, "cuts and fills are made where the iso-value is 0", progress_);
         return;
     }
     {

@@ -126,15 +126,24 @@ double volumeOf(const ClosedMesh& input, double voxel, const FineSigns& signs) {
     return agree ? exact : counted;
 }
 
-// What level 0 should have.
+// What level 0 should have. What is missing is said: silence would mean that level 0 is the input.
 void putTruth(InputReport& report, const ClosedMesh& input, double voxel,
-              const std::vector<openvdb::Vec3d>& points, const FineSigns& signs) {
+              const std::vector<openvdb::Vec3d>& points, const FineSigns& signs, const Progress& progress) {
     report.volume = volumeOf(input, voxel, signs);
+    const auto unknown = [&](const char* why) {
+        progress.say(
+            fmt::format("how many parts, handles and cavities it has is not known: {}; level 0 is compared "
+                        "by volume alone",
+                        why));
+    };
     const TriangleMesh& mesh = input.loaded.mesh;
     const MeshTopology topology = topologyOf(mesh);
-    if (input.repair.evenOdd || !topology.closed() || !topology.manifold() || !topology.oriented()) return;
+    if (input.repair.evenOdd || !topology.closed() || !topology.oriented())
+        return unknown("its triangles do not say what is inside");
+    if (!topology.manifold()) return unknown("its surface touches itself along edges or at points");
     const MeshComponents components = componentsOf(mesh);
-    if (componentsTouch(points, mesh.triangles, components.of, components.count(), signs)) return;
+    if (componentsTouch(points, mesh.triangles, components.of, components.count(), signs))
+        return unknown("parts of it overlap, or lie nearer than a quarter of a voxel");
     report.parts = topology.parts;
     report.handles = topology.genus;
     report.cavities = topology.cavities;
@@ -232,7 +241,7 @@ Solid::State fitted(const ClosedMesh& input, const std::string& name, const Soli
         points = inIndexSpace(mesh, *transform);
         signs.emplace(points, mesh.triangles, finestSigns(points, mesh.triangles), input.repair.evenOdd,
                       progress);
-        putTruth(solid.input, input, voxel, points, *signs);
+        putTruth(solid.input, input, voxel, points, *signs, progress);
         if (!input.repair.evenOdd && !signs->lines().hasOverlap())
             solid.surface = std::make_shared<TriangleMesh>(TriangleMesh{mesh.points, mesh.triangles, {}});
     }

@@ -102,8 +102,9 @@ void settleSpacing(const std::string& file, Header& header, const ImageReadOptio
                 "its spacing is {}; expected positive numbers, 1e-12 to 1e12; give the right one as spacing",
                 spacingText(header.spacing)));
     } else if (!header.hasZSpacing) {
-        header.warnings.push_back(fmt::format("no z spacing in {}; {} {} is assumed; give the spacing",
-                                              header.format, spacingText(header.spacing), header.unit));
+        header.warnings.push_back(fmt::format("no {} spacing in {}; {} {} is assumed; give the spacing",
+                                              header.unspaced, header.format, spacingText(header.spacing),
+                                              header.unit));
     }
 }
 

@@ -24,10 +24,11 @@ struct Header {
     ValueType type = ValueType::uint8;
     std::array<double, 3> spacing{1, 1, 1};
     std::array<Vec3, 3> axis{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    Vec3 origin;               // of the first stored voxel
-    bool hasZSpacing = true;   // false for formats that hold none
-    Space space = Space::lps;  // unspecified: the file does not say where left and right are
-    std::string unit = "mm";   // of world coordinates; "angstrom" for MRC
+    Vec3 origin;                 // of the first stored voxel
+    bool hasZSpacing = true;     // false for formats that hold none, or where one axis has none:
+    std::string unspaced = "z";  // the axes that it lacks then
+    Space space = Space::lps;    // unspecified: the file does not say where left and right are
+    std::string unit = "mm";     // of world coordinates; "angstrom" for MRC
     std::vector<std::string> warnings;
     // componentType and integral, where they differ from `type`: NIfTI scales int16 into float32.
     std::optional<ValueType> storedType;

@@ -229,8 +229,10 @@ class GlbReader {
         const Affine place = above.after(placeOf(node));
         if (const auto mesh = number(node, "mesh")) {
             ++meshesTaken_;
-            for (const json& primitive : list(element("meshes", *mesh), "primitives"))
-                takePrimitive(primitive, place);
+            const json& meshOfNode = element("meshes", *mesh);
+            const json& weights = list(list(node, "weights").empty() ? meshOfNode : node, "weights");
+            for (const json& primitive : list(meshOfNode, "primitives"))
+                takePrimitive(primitive, place, weights);
         }
         for (const std::size_t child : indices(node, "children")) takeNode(child, place, depth + 1);
     }
@@ -270,7 +272,28 @@ class GlbReader {
     // (x, y up, z) in metres -> (x, -z, y up) in mm.
     static Point inMillimetres(const Point& p) { return {1000 * p[0], -1000 * p[2] + 0.0, 1000 * p[1]}; }
 
-    void takePrimitive(const json& primitive, const Affine& place) {
+    // The points of the file: its positions, moved by the morph targets as far as the weights say.
+    std::vector<Point> pointsOf(const json& primitive, const json& attributes, const json& weights) {
+        const Values positions = valuesOf(needed(attributes, "POSITION"), 3, "VEC3");
+        std::vector<Point> points(positions.count);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            points[i] = {positions.at(i, 0), positions.at(i, 1), positions.at(i, 2)};
+        const json& targets = list(primitive, "targets");
+        if (!targets.empty()) soup_.drop(Dropped::morphTargets);
+        for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
+            if (!weights[t].is_number()) fail("'weights' holds no numbers; it is damaged");
+            const double weight = weights[t].get<double>();
+            if (weight == 0 || !targets[t].is_object() || !targets[t].contains("POSITION")) continue;
+            const Values moves = valuesOf(needed(targets[t], "POSITION"), 3, "VEC3");
+            if (moves.count != points.size())
+                fail(fmt::format("a morph target moves {} of {} points; it is damaged", moves.count,
+                                 points.size()));
+            for (std::size_t i = 0; i < points.size(); ++i)
+                for (std::size_t a = 0; a < 3; ++a) points[i][a] += weight * moves.at(i, a);
+        }
+        return points;
+    }
+    void takePrimitive(const json& primitive, const Affine& place, const json& weights) {
         if (!primitive.is_object()) fail("a primitive is no object; it is damaged");
         constexpr std::size_t kTriangles = 4, kFan = 6;  // and strips between them
         const std::size_t mode = number(primitive, "mode").value_or(kTriangles);
@@ -278,14 +301,11 @@ class GlbReader {
         noteAttributes(primitive, attributes);
         if (mode < kTriangles || mode > kFan) return soup_.drop(Dropped::lines);
         if (!attributes.is_object() || !attributes.contains("POSITION")) return;
-        const Values positions = valuesOf(needed(attributes, "POSITION"), 3, "VEC3");
+        const std::vector<Point> points = pointsOf(primitive, attributes, weights);
         const std::size_t first = soup_.points.size();
-        if (first + positions.count > std::numeric_limits<std::uint32_t>::max())
-            fail("more than 2^32 points");
-        for (std::size_t i = 0; i < positions.count; ++i)
-            soup_.points.push_back(
-                inMillimetres(place({positions.at(i, 0), positions.at(i, 1), positions.at(i, 2)})));
-        std::vector<std::uint32_t> corners = cornersOf(primitive, positions.count);
+        if (first + points.size() > std::numeric_limits<std::uint32_t>::max()) fail("more than 2^32 points");
+        for (const Point& p : points) soup_.points.push_back(inMillimetres(place(p)));
+        std::vector<std::uint32_t> corners = cornersOf(primitive, points.size());
         takeTriangles(corners, first, mode, place.mirrors());
     }
     std::vector<std::uint32_t> cornersOf(const json& primitive, std::size_t points) const {

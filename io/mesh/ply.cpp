@@ -141,9 +141,8 @@ class HeaderReader {
         for (const Element& element : header_.elements) checkElement(element);
         const std::uint64_t points = header_.countOf("vertex");
         if (points == 0) fail("no points");
-        if (header_.countOf("face") == 0)
-            fail(fmt::format("{} points but no faces; it is a point cloud, or made of triangle strips",
-                             points));
+        if (header_.countOf("face") == 0 && header_.countOf("tristrips") == 0)
+            fail(fmt::format("{} points but no faces; it is a point cloud", points));
     }
     void checkElement(const Element& element) const {
         if (element.properties.empty()) fail(fmt::format("element '{}' has no properties", element.name));
@@ -157,6 +156,8 @@ class HeaderReader {
             fail("its vertices lack x, y or z");
         if (element.name == "vertex" && std::ranges::max(axes) > 1) fail("its vertices have x, y or z twice");
         if (element.name == "face" && !hasCorners) fail("its faces lack the list 'vertex_indices'");
+        if (element.name == "tristrips" && !hasCorners)
+            fail("its triangle strips lack the list 'vertex_indices'");
     }
     [[noreturn]] void fail(const std::string& what) const { throw InputError(lines_.name(), what); }
 
@@ -265,6 +266,40 @@ void readElement(Body& body, const Element& element, const Take& take, const End
     }
 }
 
+// Triangle strips -> triangles: corners a b c d e make abc, cbd, cde; -1 ends a strip, and so does the end of the list. A corner given
+// twice in a row is how a strip turns or joins another one: no triangle.
+class Strips {
+  public:
+    explicit Strips(PolygonSoup& soup) : soup_(soup) {}
+
+    void take(double value) {
+        if (value == -1) return end();
+        const std::uint32_t corner = cornerOf(value);
+        if (length_ >= 2) add(corner);
+        last_ = {last_[1], corner};
+        ++length_;
+    }
+    void end() { length_ = 0; }
+
+  private:
+    void add(std::uint32_t corner) {
+        auto [a, b] = last_;
+        if (a == b || b == corner || corner == a) return;
+        if (length_ % 2 == 1) std::swap(a, b);
+        soup_.corners.insert(soup_.corners.end(), {a, b, corner});
+        soup_.endFace();
+    }
+
+    PolygonSoup& soup_;
+    std::array<std::uint32_t, 2> last_{};
+    std::size_t length_ = 0;  // corners of this strip so far
+};
+
+// What makes up the surface: strips count where there are no faces, beside which they would be the same triangles again.
+bool isStrips(const Header& header, const Element& element) {
+    return element.name == "tristrips" && header.countOf("face") == 0;
+}
+
 template <class Body>
 void readBody(Body body, const Header& header, PolygonSoup& soup) {
     for (const Element& element : header.elements) {
@@ -286,6 +321,14 @@ void readBody(Body body, const Header& header, PolygonSoup& soup) {
                     if (property.isCorners) soup.corners.push_back(cornerOf(value));
                 },
                 [&] { soup.endFace(); });
+        } else if (isStrips(header, element)) {
+            Strips strips(soup);
+            readElement(
+                body, element,
+                [&](const Property& property, double value) {
+                    if (property.isCorners) strips.take(value);
+                },
+                [&] { strips.end(); });
         } else {
             readElement(
                 body, element, [](const Property&, double) {}, [] {});
@@ -303,7 +346,8 @@ Dropped kindOfProperty(std::string_view name) {
 
 void noteDropped(const Header& header, PolygonSoup& soup) {
     for (const Element& element : header.elements) {
-        const bool isVertex = element.name == "vertex", isFace = element.name == "face";
+        const bool isVertex = element.name == "vertex",
+                   isFace = element.name == "face" || isStrips(header, element);
         if (!isVertex && !isFace && element.count > 0) soup.drop(Dropped::other);
         if (element.count == 0) continue;
         for (const Property& property : element.properties)

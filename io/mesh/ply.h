@@ -1,5 +1,6 @@
 // PLY: text, or binary of either byte order. The elements `vertex` (x, y, z) and `face` (the list vertex_indices or
-// vertex_index) are read, tags in comments of the header; other elements and properties are passed over.
+// vertex_index) are read, and where there are no faces `tristrips`, as scanners write them: lists of triangle strips, which -1
+// separates. Tags are read in comments of the header; other elements and properties are passed over.
 #pragma once
 
 #include <string>

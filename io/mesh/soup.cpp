@@ -5,8 +5,9 @@
 namespace isowave {
 
 std::string PolygonSoup::droppedNote() const {
-    constexpr std::array kNames{"colours", "texture coordinates",     "normals",    "materials",
-                                "groups",  "lines and single points", "animations", "other properties"};
+    constexpr std::array kNames{"colours",         "texture coordinates",     "normals",    "materials",
+                                "groups",          "lines and single points", "animations", "morph targets",
+                                "other properties"};
     std::vector<std::string> names;
     for (std::size_t i = 0; i < kNames.size(); ++i)
         if (dropped >> i & 1) names.emplace_back(kNames[i]);

@@ -18,7 +18,17 @@ struct MeshTag {
 };
 
 // What a file may hold besides, and isowave does not keep.
-enum class Dropped { colours, textureCoordinates, normals, materials, groups, lines, animations, other };
+enum class Dropped {
+    colours,
+    textureCoordinates,
+    normals,
+    materials,
+    groups,
+    lines,
+    animations,
+    morphTargets,
+    other
+};
 
 struct PolygonSoup {
     std::vector<Point> points;

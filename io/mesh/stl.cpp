@@ -76,7 +76,8 @@ std::vector<Point> readBinary(std::string_view bytes, const std::string& name, P
     return points;
 }
 
-// Words over any line breaks; solids may have names of several words, up to the end of their line.
+// Words over any line breaks; solids may have names of several words, up to the end of their line, or where all stands on one
+// line up to the words "facet normal".
 class TextStl {
   public:
     TextStl(std::string_view text, const std::string& name) : lines_(text, name, Lines::Break::blank) {}
@@ -135,12 +136,24 @@ class TextStl {
         inSolid_ = true;
         ++solids_;
         solidLine_ = lines_.number();
-        lines_.restOfLine();
+        while (!lines_.isLineDone() && !facetFollows()) lines_.word();
+    }
+    bool facetFollows() const {
+        Lines ahead = lines_;
+        return isKeyword(ahead.word(), "facet") && isKeyword(ahead.word(), "normal");
     }
     void endSolid() {
         if (inFacet_) lines_.fail("'endsolid' inside a facet");
         inSolid_ = false;
-        lines_.restOfLine();
+        while (!lines_.isLineDone())
+            if (isKeyword(lines_.word(), "solid") && namesSolidWithFacets()) return beginSolid();
+    }
+    // Whether what is left of this line is the name of a solid and its facets: a file on one line.
+    bool namesSolidWithFacets() const {
+        constexpr std::size_t kLongestName = 400;
+        Lines ahead = lines_;
+        return lowerCase(ahead.restOfLine().substr(0, kLongestName)).find("facet normal") !=
+               std::string::npos;
     }
     void beginFacet() {
         if (inFacet_) lines_.fail(fmt::format("the facet of line {} has no 'endfacet'", facetLine_));

@@ -45,9 +45,15 @@ TEST(LimitLevel, TellsOfItsEdits) {
 TEST(LimitLevel, SaysWhatIsMissed) {
     BSplineField field = fieldFromDistance(16, torus(8, 3));
     LevelReport report = counted(field);
-    limitLevel(field, 1, {.parts = 0}, 0, report, {});  // the largest part stays
+    report.level = 2;
+    Progress progress;
+    std::string said;
+    progress.remark = [&](std::string_view line) { said = line; };
+    limitLevel(field, 1, {.parts = 0}, 0, report, progress);  // the largest part stays
     ASSERT_TRUE(report.limitsMissed);
-    EXPECT_NE(report.limitsMissed->find("1 parts where 0 are allowed"), std::string::npos);
+    EXPECT_EQ(report.limitsMissed->find("1 part where 0 are allowed; 0 cuts and fills made, "), 0u)
+        << *report.limitsMissed;
+    EXPECT_EQ(said, "level 2: limits on the topology are missed: " + *report.limitsMissed);
 }
 
 }  // namespace

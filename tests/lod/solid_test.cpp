@@ -270,7 +270,14 @@ TEST(MeshSolid, SaysItsOwnVolumeAndCountsWhatOverlapsOnce) {
     EXPECT_LT(coarse.volume.value(), 1.9 * volume);
     EXPECT_NEAR(coarse.volume.value(), fine.volume.value(), 2e-3 * volume);
     EXPECT_EQ(coarse.handles, std::nullopt) << "one solid, with other counts than its parts";
-    EXPECT_EQ(open(ring, {.voxels = 32}).input().handles, 1);
+    // Which is said: silence means that level 0 has the input's.
+    Remarks remarks;
+    open(overlapping, {.voxels = 32}, remarks.progress());
+    EXPECT_THAT(remarks.text,
+                ::testing::HasSubstr("handles and cavities it has is not known: parts of it overlap"));
+    remarks.text.clear();
+    EXPECT_EQ(open(ring, {.voxels = 32}, remarks.progress()).input().handles, 1);
+    EXPECT_EQ(remarks.text.find("not known"), std::string::npos);
 }
 
 TEST(MeshSolid, IsThereWhereNoLatticePointIsInside) {

@@ -411,6 +411,7 @@ void placeByAxes(const std::string& file, const NrrdText& text, const NrrdAxes& 
     const std::vector<std::string> centerings = words(toLower(text.get("centerings")));
     std::array<Vec3, 3> step{};
     Vec3 origin;
+    std::vector<char> unspaced;
     for (std::size_t a = 0; a < 3; ++a) {
         const std::size_t axis = axes.first + a;
         const int i = static_cast<int>(a);
@@ -419,12 +420,16 @@ void placeByAxes(const std::string& file, const NrrdText& text, const NrrdAxes& 
         const auto cells = static_cast<double>(header.size[a] - (node ? 1 : 0));
         double spacing = ofAxis(text, "spacings", axis);
         if (std::isnan(spacing)) spacing = cells > 0 ? (high - low) / cells : std::nan("");
-        header.hasZSpacing = header.hasZSpacing && !std::isnan(spacing);
-        if (std::isnan(spacing)) spacing = 1;
+        if (std::isnan(spacing)) {
+            spacing = 1;
+            unspaced.push_back("xyz"[a]);
+        }
         step[a][i] = unit[i];
         if (std::isfinite(low)) origin[i] = unit[i] * (low + (node ? 0 : spacing / 2));
         header.spacing[a] = unit[i] * spacing;
     }
+    header.hasZSpacing = unspaced.empty();
+    header.unspaced = fmt::format("{}", fmt::join(unspaced, ", "));
     const std::array<double, 3> spacing = header.spacing;
     place(header, step, origin);
     header.spacing = spacing;  // refused, or healed by a given one, where it is not positive

@@ -33,7 +33,7 @@ constexpr zip_uint64_t kBestRatio = 1040;
 
 class Archive {
   public:
-    Archive(std::string_view bytes, const std::string& name) : name_(name) {
+    Archive(std::string_view bytes, const std::string& name) : name_(name), bytes_(bytes.size()) {
         zip_error_t error;
         zip_error_init(&error);
         zip_source_t* const source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -50,13 +50,12 @@ class Archive {
     Archive& operator=(const Archive&) = delete;
 
     // Nothing where the archive has no such part. Names have no case in 3MF.
-    std::optional<std::string> part(const std::string& path, zip_uint64_t archiveBytes) const {
+    std::optional<std::string> part(const std::string& path) const {
         const zip_int64_t index = zip_name_locate(zip_, path.c_str(), ZIP_FL_NOCASE);
         zip_stat_t about;
         if (index < 0 || zip_stat_index(zip_, static_cast<zip_uint64_t>(index), 0, &about) != 0)
             return std::nullopt;
-        if (!(about.valid & ZIP_STAT_SIZE) || about.size > kMostBytes ||
-            about.size / kBestRatio > archiveBytes)
+        if (!(about.valid & ZIP_STAT_SIZE) || about.size > kMostBytes || about.size / kBestRatio > bytes_)
             throw InputError(
                 name_, fmt::format("its part {} is said to have {} bytes; it is damaged", path, about.size));
         std::string text(about.size, '\0');
@@ -72,6 +71,7 @@ class Archive {
 
   private:
     const std::string& name_;
+    zip_uint64_t bytes_;
     zip_t* zip_;
 };
 
@@ -96,6 +96,7 @@ struct Transform {
 struct Item {
     std::string object;
     Transform transform;
+    std::string path = {};  // of the part whose model has the object; empty: the model that has the item
 };
 
 struct Object {
@@ -105,11 +106,17 @@ struct Object {
     bool isSupport = false;
 };
 
+// "/3D/Objects/a.model" -> "3D/Objects/a.model", as the archive has it.
+std::string partOf(std::string_view path) {
+    return std::string(path.substr(std::min(path.find_first_not_of('/'), path.size())));
+}
+
 // The elements that count, by their names without prefixes, as they come.
 class ModelReader {
   public:
-    ModelReader(std::string_view text, const std::string& name)
-        : name_(name), parser_(XML_ParserCreate(nullptr), &XML_ParserFree) {
+    // what  how messages call it: "its model"
+    ModelReader(std::string_view text, const std::string& name, const std::string& what)
+        : name_(name), what_(what), parser_(XML_ParserCreate(nullptr), &XML_ParserFree) {
         XML_SetUserData(parser_.get(), this);
         XML_SetStartElementHandler(parser_.get(), &ModelReader::onStart);
         for (std::size_t at = 0; at <= text.size(); at += kPiece) {
@@ -118,8 +125,10 @@ class ModelReader {
             if (XML_Parse(parser_.get(), piece.data(), static_cast<int>(piece.size()), last) != XML_STATUS_OK)
                 refuse();
         }
-        if (!isModel_) throw InputError(name_, fmt::format("its part {} is no model", kModel));
+        if (!isModel_) throw InputError(name_, what_ + " is no model of 3MF");
     }
+
+    const std::string& what() const { return what_; }
 
     std::map<std::string, Object> objects;
     std::vector<std::string> order;  // of the objects
@@ -146,12 +155,12 @@ class ModelReader {
     [[noreturn]] void refuse() const {
         if (!failure_.empty()) throw InputError(failure_);
         throw InputError(
-            name_, fmt::format("line {} of its model is no XML: {}", XML_GetCurrentLineNumber(parser_.get()),
+            name_, fmt::format("line {} of {} is no XML: {}", XML_GetCurrentLineNumber(parser_.get()), what_,
                                XML_ErrorString(XML_GetErrorCode(parser_.get()))));
     }
     [[noreturn]] void fail(const std::string& what) const {
         throw InputError(
-            name_, fmt::format("line {} of its model: {}", XML_GetCurrentLineNumber(parser_.get()), what));
+            name_, fmt::format("line {} of {}: {}", XML_GetCurrentLineNumber(parser_.get()), what_, what));
     }
 
     static const char* find(Attributes attributes, std::string_view wanted) {
@@ -189,13 +198,10 @@ class ModelReader {
     }
 
     Item itemOf(Attributes attributes) const {
+        Item item{text(attributes, "objectid"), transformOf(attributes)};
         for (Attributes a = attributes; *a; a += 2)
-            if (std::string_view(a[0]).ends_with(":path"))
-                fail(
-                    "it refers to a model in another part (3MF's production extension), which is not read; "
-                    "export it "
-                    "without");
-        return {text(attributes, "objectid"), transformOf(attributes)};
+            if (std::string_view(a[0]).ends_with(":path")) item.path = partOf(a[1]);
+        return item;
     }
 
     void startModel(Attributes attributes) {
@@ -257,27 +263,57 @@ class ModelReader {
     void drop(Dropped what) { dropped |= 1u << static_cast<unsigned>(what); }
 
     const std::string& name_;
+    const std::string what_;
     std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser_;
     std::string failure_;
     bool isModel_ = false;
     Object* object_ = nullptr;
 };
 
+// The models of a file: one, or by the production extension more, each in a part of its own, read when it is first wanted.
+class Models {
+  public:
+    Models(const Archive& archive, std::string_view rootText, const std::string& name)
+        : archive_(archive), name_(name), root_(rootText, name, "its model") {}
+
+    const ModelReader& root() const { return root_; }
+    const ModelReader& at(const std::string& part) {
+        auto& model = others_[part];
+        if (model) return *model;
+        const auto text = archive_.part(part);
+        if (!text) throw InputError(name_, "has no part '" + shown(part) + "', which its model refers to");
+        model = std::make_unique<ModelReader>(*text, name_, "its part '" + shown(part) + "'");
+        return *model;
+    }
+    unsigned dropped() const {
+        unsigned all = root_.dropped;
+        for (const auto& [part, model] : others_) all |= model->dropped;
+        return all;
+    }
+
+  private:
+    const Archive& archive_;
+    const std::string& name_;
+    const ModelReader root_;
+    std::map<std::string, std::unique_ptr<const ModelReader>> others_;
+};
+
 // Objects of the build as polygons, moved by all transforms on the way to them.
 class Assembly {
   public:
-    Assembly(const ModelReader& model, const std::string& name) : model_(model), name_(name) {}
+    Assembly(Models& models, const std::string& name) : models_(models), name_(name) {}
 
     PolygonSoup make() {
-        std::vector<Item> items = model_.build;
+        const ModelReader& root = models_.root();
+        std::vector<Item> items = root.build;
         if (items.empty())
-            for (const std::string& id : model_.order)
-                if (!model_.objects.at(id).isSupport) items.push_back({id, {}});
-        for (const Item& item : items) add(item, 0);
+            for (const std::string& id : root.order)
+                if (!root.objects.at(id).isSupport) items.push_back({id, {}});
+        for (const Item& item : items) add(item, root, 0);
         for (Point& p : soup_.points)
-            for (double& x : p) x *= model_.millimetres;
+            for (double& x : p) x *= root.millimetres;
         soup_.format = "3MF";
-        soup_.dropped = model_.dropped;
+        soup_.dropped = models_.dropped();
         return std::move(soup_);
     }
 
@@ -286,21 +322,26 @@ class Assembly {
     // Components of components multiply.
     static constexpr std::size_t kMost = std::size_t(1) << 28;
 
-    void add(const Item& item, int depth) {
-        const auto found = model_.objects.find(item.object);
-        if (found == model_.objects.end())
-            throw InputError(name_,
-                             "its model has no object '" + shown(item.object) + "', which it refers to");
+    // The unit of points in the end is that of the root.
+    void add(const Item& item, const ModelReader& from, int depth) {
+        const ModelReader& model = item.path.empty() ? from : models_.at(item.path);
+        const auto found = model.objects.find(item.object);
+        if (found == model.objects.end())
+            throw InputError(
+                name_, model.what() + " has no object '" + shown(item.object) + "', which an item refers to");
         if (depth > kDeepest || ++added_ > 1'000'000)
             throw InputError(name_, "its objects hold each other without end");
         const Object& object = found->second;
         const std::size_t firstPoint = soup_.points.size(), firstCorner = soup_.corners.size();
         addMesh(object, firstPoint);
-        for (const Item& component : object.components) add(component, depth + 1);
+        for (const Item& component : object.components) add(component, model, depth + 1);
         if (std::max(soup_.corners.size(), soup_.points.size()) > kMost)
             throw InputError(name_, "its objects have more than 2^28 points or corners in all");
-        for (std::size_t i = firstPoint; i < soup_.points.size(); ++i)
+        const double unit = model.millimetres / from.millimetres;
+        for (std::size_t i = firstPoint; i < soup_.points.size(); ++i) {
+            for (double& x : soup_.points[i]) x *= unit;
             soup_.points[i] = item.transform(soup_.points[i]);
+        }
         if (!item.transform.mirrors()) return;
         for (std::size_t c = firstCorner; c + 2 < soup_.corners.size(); c += 3)
             std::swap(soup_.corners[c + 1], soup_.corners[c + 2]);
@@ -316,7 +357,7 @@ class Assembly {
         }
     }
 
-    const ModelReader& model_;
+    Models& models_;
     const std::string& name_;
     PolygonSoup soup_;
     int added_ = 0;
@@ -327,19 +368,19 @@ class Assembly {
 PolygonSoup readThreeMf(std::string_view bytes, const std::string& name) {
     const Archive archive(bytes, name);
     std::string path = kModel;
-    if (const auto relations = archive.part("_rels/.rels", bytes.size())) {
+    if (const auto relations = archive.part("_rels/.rels")) {
         const std::size_t type = relations->find(kModelType);
         const std::size_t begin = relations->rfind('<', type), end = relations->find('>', type);
         const std::size_t target = type == std::string::npos ? type : relations->find("Target=\"", begin);
         if (target != std::string::npos && target < end) {
             const std::size_t from = target + 8, to = relations->find('"', from);
-            path = relations->substr(from, to - from);
-            path.erase(0, std::min(path.find_first_not_of('/'), path.size()));
+            path = partOf(std::string_view(*relations).substr(from, to - from));
         }
     }
-    const auto text = archive.part(path, bytes.size());
+    const auto text = archive.part(path);
     if (!text) throw InputError(name, "has no part '" + shown(path) + "', the model of a 3MF file");
-    PolygonSoup soup = Assembly(ModelReader(*text, name), name).make();
+    Models models(archive, *text, name);
+    PolygonSoup soup = Assembly(models, name).make();
     soup.space = spaceIn(std::string_view(*text).substr(0, text->find("<resources")));  // in its description
     return soup;
 }

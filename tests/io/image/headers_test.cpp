@@ -404,7 +404,13 @@ TEST_F(Headers, SpacingsAndAxisMinsPlaceWhatHasNoSpace) {
     EXPECT_THAT(image.indexToWorld.origin, ElementsAre(10, 20, 32));
     EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("names no space")));
     image = readImage(nrrd(kNrrd + "encoding: raw\n", voxels));
-    EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("names no space"), HasSubstr("no z spacing in NRRD")));
+    EXPECT_THAT(image.warnings,
+                ElementsAre(HasSubstr("names no space"), HasSubstr("no x, y, z spacing in NRRD")));
+    // It was always z that was said to be missing.
+    image = readImage(nrrd(kNrrd + "encoding: raw\nspacings: 2 nan 4\n", voxels));
+    EXPECT_THAT(image.spacing(), ElementsAre(2, 1, 4));
+    EXPECT_THAT(image.warnings,
+                ElementsAre(HasSubstr("names no space"), HasSubstr("no y spacing in NRRD; 2 x 1 x 4 mm")));
 }
 
 TEST_F(Headers, EveryNrrdEncodingGivesTheSameVoxels) {

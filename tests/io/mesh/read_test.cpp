@@ -449,6 +449,51 @@ TEST(ReadMesh, PassesOverWhatPlyRowsHoldBesides) {
                    "twice");
 }
 
+// The name of its solid was taken to be the whole file: "ends after 0 facets".
+TEST(ReadMesh, ReadsTextStlThatStandsOnOneLine) {
+    const auto onOneLine = [](std::string text) {
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        return text;
+    };
+    const std::string text = asciiStl();
+    expectTetrahedron(readBytes("a.stl", onOneLine(text)));
+    MeshFileInfo info;
+    const TriangleMesh two = readBytes("a.stl", onOneLine(text + text), &info);
+    EXPECT_EQ(two.triangles.size(), 8u);
+    EXPECT_REFUSED("a.stl", onOneLine(replaced(text, "endsolid", "")),
+                   "ends after 4 facets without 'endsolid'");
+    // Names may hold the words.
+    expectTetrahedron(
+        readBytes("a.stl", replaced(replaced(text, "solid tetrahedron", "solid facet of a solid"),
+                                    "endsolid tetrahedron", "endsolid facet of a solid")));
+}
+
+// As Cyberware's scanners and plyconvert write them. They were taken for point clouds.
+TEST(ReadMesh, ReadsTriangleStripsOfPly) {
+    const std::string head =
+                          "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double "
+                          "y\nproperty double z\n",
+                      list = "property list int int vertex_indices\nend_header\n",
+                      points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    const auto read = [&](const std::string& strips, const std::string& rows) {
+        return readBytes("a.ply", head + "element tristrips " + strips + "\n" + list + points + rows);
+    };
+    expectTetrahedron(read("1", "6 0 2 1 3 0 2\n"));
+    // One after the other in a list, whose turns begin anew; with corners given twice; in rows of their own.
+    expectTetrahedron(read("1", "14 2 1 0 3 -1 3 1 2 -1 0 0 2 3 -1\n"));
+    expectTetrahedron(read("2", "4 2 1 0 3\n8 3 1 2 -1 0 0 2 3\n"));
+    EXPECT_REFUSED("a.ply", head + "element tristrips 1\n" + list + points + "3 0 1 4\n", "refers to");
+    EXPECT_REFUSED(
+        "a.ply",
+        head + "element tristrips 1\nproperty list int int strip\nend_header\n" + points + "3 0 1 2\n",
+        "its triangle strips lack the list 'vertex_indices'");
+    // Beside faces they say the same again.
+    expectTetrahedron(readBytes(
+        "a.ply", replaced(replaced(kTetrahedronPly, "end_header",
+                                   "element tristrips 1\nproperty list int int vertex_indices\nend_header"),
+                          "3 1 2 3\n", "3 1 2 3\n6 0 2 1 3 0 2\n")));
+}
+
 TEST(ReadMesh, DoesNotLoseFacetsSilently) {
     const std::string text = asciiStl();
     EXPECT_REFUSED("a.stl", replaced(text, "facet normal", "fcet normal"), "'fcet' is no STL keyword");
@@ -552,13 +597,15 @@ TEST(ReadMesh, KnowsHowFineItsNumbersAre) {
 
 // Two nodes over one mesh of a triangle strip that makes a tetrahedron's four faces, in another node that is turned and far
 // away; the second one is mirrored.
-std::string tetrahedraGlb(const std::string& nodes) {
+std::string tetrahedraGlb(const std::string& nodes, const std::string& ofMesh = "",
+                          const std::string& ofPrimitive = "") {
     std::string binary;
     for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) append(binary, x);
     for (const int i : {0, 2, 1, 3, 0, 2}) append(binary, static_cast<std::uint16_t>(i));
     std::string json =
         R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
-        R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0}]}],)"
+        R"(,"meshes":[{)" + ofMesh + R"("primitives":[{)" + ofPrimitive +
+        R"("attributes":{"POSITION":0},"indices":1,"mode":5,"material":0}]}],)"
         R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
         R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],)"
         R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],)"
@@ -591,6 +638,24 @@ TEST(ReadMesh, ReadsGlbWithTheTransformsOfItsNodes) {
     EXPECT_NEAR(mesh.points[1][1], -100e3, 1e-6);
     EXPECT_NEAR(mesh.points[1][2], 1e3, 1e-6);
     EXPECT_EQ(readMeshFile(written("a.glb", glb)).droppedNote, "materials and groups are not kept");
+}
+
+// They were passed over without a remark: a face that is scanned at rest and shown smiling came at rest.
+TEST(ReadMesh, MorphTargetsOfGlbMoveAsFarAsTheirWeightsSay) {
+    // The target of each point is the point itself, so that a weight of w makes the tetrahedron 1 + w as large.
+    const auto morphed = [](const std::string& nodes, const std::string& ofMesh = "") {
+        return tetrahedraGlb(nodes, ofMesh, R"("targets":[{"POSITION":0}],)");
+    };
+    const double volume = checks::volumeOf(readBytes("a.glb", tetrahedraGlb(R"([{"mesh":0}])")));
+    const auto grown = [&](const std::string& glb) {
+        return std::cbrt(checks::volumeOf(readBytes("a.glb", glb)) / volume);
+    };
+    EXPECT_NEAR(grown(morphed(R"([{"mesh":0}])")), 1, 1e-9);
+    EXPECT_NEAR(grown(morphed(R"([{"mesh":0}])", R"("weights":[0.5],)")), 1.5, 1e-9);
+    EXPECT_NEAR(grown(morphed(R"([{"mesh":0,"weights":[1]}])", R"("weights":[0.5],)")), 2, 1e-9);
+    EXPECT_THAT(readMeshFile(written("a.glb", morphed(R"([{"mesh":0}])"))).droppedNote,
+                ::testing::HasSubstr("morph targets"));
+    EXPECT_REFUSED("a.glb", morphed(R"([{"mesh":0}])", R"("weights":[null],)"), "'weights' holds no numbers");
 }
 
 TEST(ReadMesh, RefusesGlbThatItCannotRead) {

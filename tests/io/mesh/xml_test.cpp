@@ -201,6 +201,38 @@ TEST(ThreeMf, TheRelationSaysWhereTheModelIs) {
                 HasSubstr("has no part '3D/part.model'"));
 }
 
+// The production extension, as Bambu Studio and OrcaSlicer write every file. It was refused.
+TEST(ThreeMf, ObjectsMayLieInPartsOfTheirOwn) {
+    const std::string space = "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"",
+                      object = "<object id=\"1\">" + kTetrahedron + "</object>",
+                      part = model(object, "<item objectid=\"1\"/>"),
+                      inches = model(object, "", "unit=\"inch\""),
+                      bad = model("<object id=\"1\"><vertex x=\"a\"/></object>", "");
+    const auto read = [&](const std::string& objects, const std::string& build) {
+        const std::string root = model(objects, build, space + " requiredextensions=\"p\"");
+        return readThreeMf(zipOf({{"3D/3dmodel.model", root},
+                                  {"3D/Objects/a.model", part},
+                                  {"3D/Objects/inch.model", inches},
+                                  {"3D/Objects/bad.model", bad}}),
+                           "file");
+    };
+    const PolygonSoup item = read(
+        "", "<item objectid=\"1\" p:path=\"/3D/Objects/a.model\" transform=\"2 0 0 0 1 0 0 0 1 0 0 5\"/>");
+    EXPECT_EQ(item.faceCount(), 4u);  // what the part itself would build is not asked
+    EXPECT_EQ(item.points[1], (Point{2, 0, 5}));
+    const PolygonSoup components = read(
+        "<object id=\"1\"><components><component objectid=\"1\" p:path=\"/3D/Objects/a.model\"/>"
+        "<component objectid=\"1\" p:path=\"/3D/Objects/inch.model\" transform=\"1 0 0 0 1 0 0 0 1 0 0 "
+        "5\"/></components></object>",
+        "<item objectid=\"1\"/>");
+    EXPECT_EQ(components.faceCount(), 8u);
+    EXPECT_EQ(components.points[5], (Point{25.4, 0, 5}));
+    EXPECT_THAT(refusal([&] { read("", "<item objectid=\"1\" p:path=\"/3D/Objects/bad.model\"/>"); }),
+                HasSubstr("of its part '3D/Objects/bad.model': x is 'a'"));
+    EXPECT_THAT(refusal([&] { read("", "<item objectid=\"9\" p:path=\"/3D/Objects/a.model\"/>"); }),
+                HasSubstr("its part '3D/Objects/a.model' has no object '9'"));
+}
+
 // They were left out without a word, and the rest was taken for the shape.
 TEST(ThreeMf, WhatIsNoTriangleIsRefusedWhereItIsPartOfTheShape) {
     const auto refused = [](const std::string& mesh, const std::string& attributes = "") {
@@ -223,8 +255,7 @@ TEST(ThreeMf, WhatIsNoTriangleIsRefusedWhereItIsPartOfTheShape) {
                 HasSubstr("needs 3MF's extension"));
     EXPECT_THAT(refused(kTetrahedron, "requiredextensions=\"x\""), HasSubstr("needs 3MF's extension 'x'"));
     EXPECT_EQ(needs("m", schemas + "material/2015/02"), "");
-    EXPECT_EQ(needs("p", schemas + "production/2015/06"),
-              "");  // paths to other parts are refused by themselves
+    EXPECT_EQ(needs("p", schemas + "production/2015/06"), "");
 }
 
 TEST(ThreeMf, DamageIsRefused) {
@@ -244,7 +275,7 @@ TEST(ThreeMf, DamageIsRefused) {
     EXPECT_THAT(refused(model(object, "<item objectid=\"1\" transform=\"1 2\"/>")),
                 HasSubstr("expected 12 numbers"));
     EXPECT_THAT(refused(model(object, "<item objectid=\"1\" p:path=\"/b.model\" xmlns:p=\"p\"/>")),
-                HasSubstr("production extension"));
+                HasSubstr("has no part 'b.model', which its model refers to"));
     const std::string whole = threeMf(model(object, "<item objectid=\"1\"/>"));
     for (std::size_t length = 1; length < whole.size(); ++length)
         EXPECT_NE(refusal([&] { readThreeMf(whole.substr(0, length), "file"); }), "") << length;
