@@ -263,6 +263,7 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
     if (!files.lods.empty()) report["glb_lods"] = files.lods;
     if (!files.view.empty()) report["view"] = files.view;
     if (!files.tiles.empty()) report["tiles"] = files.tiles;
+    if (files.colourRange) report["colour_range"] = *files.colourRange;
     report["steps"] = ladder.steps;
     report["coefficients_stored"] = ladder.coefficientsStored;
     report["control_points"] = ladder.controlPoints;

@@ -53,13 +53,15 @@ struct MeshWriter {
     std::unique_ptr<TileWriter> tiles;  // of --tiles
     Progress progress;
     LadderFiles files;
+    std::vector<std::filesystem::path> written = {};
     double firstVoxel = 0;
     bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
     template <class Report>
     void write(const std::string& name, const Report& report, const TriangleMesh& mesh,
-               bool isLevel0 = false) {
-        writeMesh(out.place(name), mesh, format, colours.with(options, mesh, isLevel0, progress));
+               const MeshWriteOptions& with) {
+        written.push_back(out.place(name));
+        writeMesh(written.back(), mesh, format, with);
         if (!page) return;
         view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
         facts.file = name;
@@ -69,14 +71,17 @@ struct MeshWriter {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofLevel(report));
             fromLevel0 = fromLevel0 || report.step == 0;
-            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
             if (tiles) addTiles(*tiles, report, mesh, progress);
             if (report.step == 0) colours.setLevel0(mesh);
-            write(files.levels.back(), report, mesh, report.step == 0);
+            const MeshWriteOptions with = colours.with(options, mesh, report.step == 0, progress);
+            if (lods)
+                lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report),
+                          with.distanceToLevel0);
+            write(files.levels.back(), report, mesh, with);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), report, mesh);
+            write(files.budgets.back(), report, mesh, colours.with(options, mesh, false, progress));
         };
         return {level, budget, releaseFreedMemory};
     }
@@ -90,7 +95,12 @@ struct MeshWriter {
     void writeLods() {
         if (!lods) return;
         files.lods = names.ofLods();
-        lods->write(out.place(files.lods));
+        lods->write(out.place(files.lods), colours.range().value_or(0));
+    }
+    // One range of colours for all meshes: known when the last one has been measured.
+    void recolour() {
+        files.colourRange = colours.range();
+        for (const std::filesystem::path& file : written) colours.recolour(file, format);
     }
     void writePage() {
         if (!page) return;
@@ -335,6 +345,7 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
                       .progress = progress,
                       .files = {}};
     Ladder ladder = makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), progress);
+    writer.recolour();
     writer.writeLods();
     if (writer.tiles) {
         writer.tiles->finish();
