@@ -89,7 +89,7 @@ Rebuild::Rebuild()
                        frames_ = choice<Frames>(v, {{"global", Frames::global}, {"local", Frames::local}});
                    });
     options_.value("--threshold", "LEN", "", "leave out details shorter than this, in the units of BASE",
-                   [this](const std::string& v) { threshold_ = positive(v); });
+                   [this](const std::string& v) { threshold_ = lengthIn(v, "the units of BASE"); });
     options_.value("--keep", "N", "", "only the N longest details; of each curve",
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--error-table", "meshes: the error that is left with the longest 0 to 50 % of the details",
