@@ -440,7 +440,7 @@ struct ReliefReportOptions {
     int levels = 2;
     Positions positions = Positions::control;  // of the heights that are returned
     bool compare = false;                      // what the other schemes make of the relief without details
-    bool details = false;                      // the bytes of a file of details too; Rows only
+    bool details = false;                      // the bytes of a file of details too
 };
 
 // The relief at every level. Grids have the samples where they were: sample (r, c) of level k lies where (r 2^k, c 2^k) of
@@ -477,7 +477,8 @@ ISOWAVE_EXPORT ReliefReport reportRelief(const Grid& grid, const ReliefReportOpt
 // Heights from a file of details (`relief --details`), at any level, edited or simplified.
 struct ReliefRebuildOptions {
     // The coarse heights after an edit, as large as coarseHeights(). What lies beyond the relief's own samples (Rows continues
-    // it) moves as the nearest of them does.
+    // it) moves as the nearest of them does. Of Quincunx the samples of the hexagon count, which must be finite; those between them
+    // are not looked at.
     std::optional<Grid> edited = {};
     int depth = kAllLevels;                // subdivisions; 0: the coarse heights
     std::optional<double> threshold = {};  // details smaller than this are left out

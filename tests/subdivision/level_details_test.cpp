@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "subdivision/curves/curve.h"
 #include "subdivision/curves/curve_details.h"
 #include "subdivision/curves/curve_rebuild.h"
+#include "subdivision/lattice/relief.h"
 #include "subdivision/lattice/relief_details.h"
 #include "tests/subdivision/numbers.h"
 #include "tests/subdivision/refusal.h"
@@ -304,8 +306,18 @@ ReliefDetails detailsOf(const ReliefReport& report) {
     return ReliefDetails::load(folder / "d");
 }
 
-ReliefReport reported(const Grid& grid, const std::string& scheme, int levels) {
-    return reportRelief(grid, {.scheme = scheme, .levels = levels, .details = true});
+ReliefReport reported(const Grid& grid, const std::string& scheme, int levels,
+                      ReliefLayout layout = ReliefLayout::Rows) {
+    return reportRelief(grid, {.scheme = scheme, .layout = layout, .levels = levels, .details = true});
+}
+
+// NaN, where quincunx has no sample, equals NaN.
+void expectSameBits(const Grid& found, const Grid& expected) {
+    ASSERT_EQ(found.values.size(), expected.values.size());
+    EXPECT_EQ(found.rows, expected.rows);
+    for (std::size_t k = 0; k < found.values.size(); ++k)
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(found.values[k]),
+                  std::bit_cast<std::uint64_t>(expected.values[k]));
 }
 
 TEST(ReliefRebuild, IsTheReportsReliefToTheBitAtEveryLevel) {
@@ -319,6 +331,74 @@ TEST(ReliefRebuild, IsTheReportsReliefToTheBitAtEveryLevel) {
             EXPECT_EQ(details.rebuild({.depth = 0}).heights.values, report.levels[2].heights.values);
             EXPECT_LT(largestDifference(details.rebuild().heights.values, grid.values), 1e-10);
         }
+}
+
+TEST(ReliefRebuild, OfQuincunxIsTheReportsReliefToTheBitAtEveryLevel) {
+    for (const char* scheme : {"butterfly-3", "loop-like:1/16,1/8"})
+        for (const Grid& grid : {hills(19, 35), hills(22, 40, 3)}) {
+            const ReliefReport report = reported(grid, scheme, 2, ReliefLayout::Quincunx);
+            const ReliefDetails details = detailsOf(report);
+            expectSameBits(details.coarseHeights(), report.levels[2].heights);
+            expectSameBits(details.rebuild().heights, report.reconstructed);
+            expectSameBits(details.rebuild({.depth = 1}).heights, report.levels[1].heights);
+            expectSameBits(details.rebuild({.depth = 0}).heights, report.levels[2].heights);
+            EXPECT_EQ(details.rebuild().report.points, 3u * 8 * 9 + 1);  // a hexagon of side 8
+            // Every sample of the hexagon is the grid's own again.
+            const Grid again = details.rebuild().heights;
+            const std::size_t row0 = (grid.rows - again.rows) / 2,
+                              column0 = (grid.columns - again.columns) / 2;
+            const Patch hexagon = Patch::hexagon(8);
+            for (const Node node : hexagon.nodes()) {
+                const std::size_t sample = quincunxSample(hexagon, node);
+                for (std::size_t c = 0; c < grid.channels; ++c)
+                    EXPECT_NEAR(again.values[sample * grid.channels + c],
+                                grid.at(row0 + sample / again.columns, column0 + sample % again.columns, c),
+                                1e-10);
+            }
+        }
+}
+
+TEST(ReliefRebuild, OfQuincunxFollowsTheSamplesOfTheHexagonAlone) {
+    const ReliefDetails details =
+        detailsOf(reported(hills(19, 35), "butterfly-trivial", 2, ReliefLayout::Quincunx));
+    const Grid coarse = details.coarseHeights(), before = details.rebuild().heights;
+    ReliefRebuildOptions options;
+    options.edited = coarse;
+    for (double& v : options.edited->values) v += 250;  // NaN stays
+    const Grid raised = details.rebuild(options).heights;
+    for (std::size_t k = 0; k < raised.values.size(); ++k)
+        if (!std::isnan(before.values[k])) {
+            EXPECT_NEAR(raised.values[k], before.values[k] + 250, 1e-9);
+        }
+    const Patch hexagon = Patch::hexagon(2);
+    const std::size_t middle = quincunxSample(hexagon, {0, 0});
+    options.edited = coarse;
+    options.edited->values[middle + 1] += 7;  // between two samples
+    expectSameBits(details.rebuild(options).heights, before);
+    options.edited->values[middle] = std::nan("");
+    EXPECT_THAT(complaint([&] { details.rebuild(options); }),
+                HasSubstr("row 2, column 4 holds no finite number, but is a sample of the coarse heights"));
+    Grid other = coarse;
+    EXPECT_FALSE(firstMovedSample(coarse, other));
+    other.values[0] = 3;  // where there is none
+    EXPECT_TRUE(firstMovedSample(coarse, other));
+}
+
+TEST(ReliefRebuild, OfQuincunxMeasuresWhatDroppedDetailsCost) {
+    const ReliefDetails details =
+        detailsOf(reported(hills(19, 35), "butterfly-trivial", 2, ReliefLayout::Quincunx));
+    const Grid whole = details.rebuild().heights;
+    const RebuiltRelief part = details.rebuild({.keep = 20});
+    double largest = 0;
+    const Patch hexagon = Patch::hexagon(8);
+    for (const Node node : hexagon.nodes()) {
+        const std::size_t at = quincunxSample(hexagon, node);
+        largest = std::max(largest, std::abs(part.heights.values[at] - whole.values[at]));
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_NEAR(part.report.error.largest, largest, 1e-12);
+    EXPECT_EQ(part.report.kept, 20u);
+    EXPECT_EQ(part.report.details, 217u - 19);
 }
 
 // Subdivision reproduces planes: raising the coarse heights by a constant raises all, whatever is continued beyond them.
@@ -361,9 +441,6 @@ TEST(ReliefRebuild, RefusesWhatDoesNotBelong) {
         complaint([&] { details.rebuild(options); }),
         HasSubstr("has 5 x 6 samples of 1 channels; the coarse heights of the details have 5 x 5 of 1"));
     EXPECT_THAT(complaint([&] { details.rebuild({.depth = 3}); }), HasSubstr("holds details for 2 levels"));
-    EXPECT_NE(
-        complaint([] { reportRelief(hills(17, 17), {.layout = ReliefLayout::Quincunx, .details = true}); }),
-        "");
     Grid other = details.coarseHeights();
     EXPECT_FALSE(firstMovedSample(details.coarseHeights(), other));
     other.values[2 * 5 + 3] += 1;
@@ -378,6 +455,10 @@ TEST(ReliefDetailsFile, RefusesDamage) {
         reportRelief(hills(6, 5), {.scheme = "butterfly-trivial", .levels = 1, .details = true}).details;
     expectEveryDamageRefused(whole, readingHeights);
     expectOthersRefusedOrRead({kReliefDetailsMagic, 1, "", "", ""}, whole, readingHeights);
+    const std::string hexagon =
+        reported(hills(7, 11), "butterfly-trivial", 1, ReliefLayout::Quincunx).details;
+    expectEveryDamageRefused(hexagon, readingHeights);
+    expectOthersRefusedOrRead({kReliefDetailsMagic, 1, "", "", ""}, hexagon, readingHeights);
     EXPECT_THAT(readingHeights("\x93NUMPY"), HasSubstr("is no file of details of heights"));
 }
 
