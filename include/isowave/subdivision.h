@@ -397,7 +397,8 @@ struct CurveRebuildOptions {
     std::vector<Polyline> moved = {};  // the coarse curves after an edit; empty: where they were
     // local: at each point the details turn as the tangent there does, from the subdivided curve before the edit to that after
     // it, before their details are added (Finkelstein and Salesin, "Multiresolution curves", 1994, section 4: details in the
-    // frame of the coarse curve). For curves in the plane. A rigid motion of the coarse curve then is one of every level.
+    // frame of the coarse curve); in space as the points around do, and where these lie on a line, all points. A rigid motion of the
+    // coarse curve then is one of every level; in space not where all of it is straight.
     Frames frames = Frames::global;
     int depth = kAllLevels;                // subdivisions; 0: the coarse curves
     std::optional<double> threshold = {};  // details shorter than this are left out
@@ -409,7 +410,7 @@ struct RebuiltCurves {
     LevelsRebuildReport report;
 };
 // Throws InputError: parts that do not belong together, an edited curve of another size, dimension or closing (which, and what
-// was expected), local frames in space.
+// was expected).
 ISOWAVE_EXPORT RebuiltCurves rebuild(CurveSet set, const CurveRebuildOptions& options = {});
 
 // ---- grids of heights ----

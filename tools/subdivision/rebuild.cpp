@@ -83,8 +83,7 @@ Rebuild::Rebuild()
                    details_);
     options_.input("--edited", "BASE with moved vertices or other heights, which takes its place", edited_);
     options_.value("--frames", "global|local", "global",
-                   "details keep their direction in space, or turn with the surface or curve (--edited; "
-                   "curves in the plane)",
+                   "details keep their direction in space, or turn with the surface or curve (--edited)",
                    [this](const std::string& v) {
                        frames_ = choice<Frames>(v, {{"global", Frames::global}, {"local", Frames::local}});
                    });
