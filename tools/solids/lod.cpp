@@ -28,6 +28,7 @@
 #include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/dry_run_text.h"
+#include "tools/solids/labels/each_label.h"
 #include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/parts.h"
@@ -146,6 +147,18 @@ std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFil
     return left;
 }
 
+// The report and the text of a run, and which files it has made.
+struct Told {
+    std::string json, text;
+    LadderFiles files;
+};
+
+Told toldOf(const Made& made) {
+    return {jsonOf(made.ladder, made.files), textOf(made.ladder, made.files, made.unit), made.files};
+}
+
+Told toldOf(const LabelLadders& made) { return {jsonOf(made), textOf(made), {made.written, {}}}; }
+
 void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, const Progress& progress) {
     const std::vector<std::string> left = leftFromBefore(out, files);
     if (left.empty()) return;
@@ -179,13 +192,13 @@ PartStory storyOf(const Made& made, const OutputFolder& out) {
 }
 
 // What can fail for want of room comes first; then only names change.
-void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
-    tellOfWhatIsLeft(out, made.files, console.progress());
-    const std::string json = withRemarks(jsonOf(made.ladder, made.files), console.remarks());
+void finish(const Told& told, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
+    tellOfWhatIsLeft(out, told.files, console.progress());
+    const std::string json = withRemarks(told.json, console.remarks());
     writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
+    console.print(toStdout ? json : told.text);
     console.flush();
     out.commit();
     if (copy) copy->commit();
@@ -215,6 +228,8 @@ class Lod : public Command {
     MeshNames namesIn(const OutputFolder& out) const;
     Made make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
               const Progress& progress) const;
+    LabelLadders makeLabels(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+                            const Progress& progress) const;
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
     std::optional<GlbLods> lodsOf(const Solid& solid) const;
     // Nothing without --view.
@@ -229,6 +244,7 @@ class Lod : public Command {
     SpaceChoice space_;
     ColourChoice colour_;
     TileChoice tiles_;
+    LabelChoice labels_;
     bool view_ = false;
     std::optional<bool> quantizedLods_;  // --glb-lods
 };
@@ -277,6 +293,7 @@ Lod::Lod()
                        quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
                    });
     tiles_.declare(options_);
+    labels_.declare(options_);
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareRegions(options_, levels_);
@@ -313,6 +330,8 @@ void Lod::check() {
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     tiles_.requireLevels(levels_, budgets_);
+    labels_.check(format_.value_or(MeshFormat::ply), budgets_, view_, quantizedLods_.has_value(),
+                  tiles_.format.has_value());
     lod::requireNoRegions(budgets_, levels_);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
@@ -355,6 +374,16 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
     return {std::move(ladder), std::move(writer.files), unit};
 }
 
+LabelLadders Lod::makeLabels(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+                             const Progress& progress) const {
+    const auto options = [this](const Solid& solid) {
+        return MeshWriteOptions{space_.of(solid), metresPerUnitOf(solid)};
+    };
+    return makeEachLabel(
+        input, withSlabsBeside(solid_, out.folder()), levels_, names, options,
+        [&](const std::string& name) { return out.place(name); }, progress);
+}
+
 int Lod::run(Console& console) {
     if (dryRun_) {
         check();
@@ -377,8 +406,10 @@ int Lod::runOne(Console& console) {
         copy.emplace(*json_);
     }
     try {
-        const Made made = make(arguments[0], names, out, console.progress());
-        finish(made, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
+        const Progress progress = console.progress();
+        const Told told = labels_.each ? toldOf(makeLabels(arguments[0], names, out, progress))
+                                       : toldOf(make(arguments[0], names, out, progress));
+        finish(told, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
@@ -389,6 +420,7 @@ int Lod::runOne(Console& console) {
 // --json has what became of each input; the reports are in the folders.
 int Lod::runParts(Console& console) {
     check();
+    if (labels_.each) throw UsageError("--each-label takes one image; start isowave once for each");
     const std::vector<std::filesystem::path> inputs = parts_.inputs(arguments);
     std::vector<Part> parts = partsOf(inputs, *output_);
     if (jsonToFile()) refuseAmong(parts, *json_);
