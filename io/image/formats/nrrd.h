@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/image/formats/stored_volume.h"
-#include "io/image/segments.h"
+#include "io/image/segment.h"
 
 namespace isowave::imageio {
 
