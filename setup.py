@@ -1,11 +1,12 @@
 """Builds and installs the Python module:  pip install --no-build-isolation .
 
-CMake does the work. ISOWAVE_BUILD names a build folder that exists already; without it build/pip is made, which takes as long as
-a build of the library takes.
+CMake does the work, in build/pip, which is made and takes as long as a build of the library takes. ISOWAVE_BUILD names another build
+folder, which exists and has been configured with -DISOWAVE_PYTHON=ON. CMAKE_ARGS has more options for cmake, as a shell would split them.
 """
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -22,22 +23,35 @@ def version() -> str:
     return re.search(r'ISOWAVE_VERSION "(.+)"', text).group(1)
 
 
+def stop(why: str) -> None:
+    """Ends with one line, which pip shows without --verbose, too."""
+    raise SystemExit(f"isowave: {why}")
+
+
+def run(*words: object) -> None:
+    if subprocess.run([str(word) for word in words]).returncode != 0:
+        stop(f"{words[0]} failed, see above (pip install --verbose); scripts/setup installs what the build needs")
+
+
 def configure(build: Path) -> None:
-    subprocess.run(
-        ["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DISOWAVE_PYTHON=ON",
-         "-DISOWAVE_TESTS=OFF", f"-DISOWAVE_PYTHON_EXECUTABLE={sys.executable}"],
-        check=True,
-    )
+    for tool in "cmake", "ninja":
+        if not shutil.which(tool):
+            stop(f"{tool} is not there, which builds the library; scripts/setup installs what the build needs")
+    run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DISOWAVE_PYTHON=ON",
+        "-DISOWAVE_TESTS=OFF", f"-DISOWAVE_PYTHON_EXECUTABLE={sys.executable}",
+        *shlex.split(os.environ.get("CMAKE_ARGS", "")))
 
 
 class CMakeBuild(build_ext):
     def build_extension(self, extension: Extension) -> None:
         given = os.environ.get("ISOWAVE_BUILD")
-        build = Path(given) if given else ROOT / "build/pip"
+        build = Path(given).absolute() if given else ROOT / "build/pip"
         if not given:
             configure(build)
+        elif not (build / "CMakeCache.txt").is_file():
+            stop(f"ISOWAVE_BUILD: {build} is no build folder; leave it out, and build/pip is made")
         jobs = subprocess.run([ROOT / "scripts/jobs"], check=True, capture_output=True, text=True).stdout.strip()
-        subprocess.run(["cmake", "--build", build, "--target", "isowave_python", "--parallel", jobs], check=True)
+        run("cmake", "--build", build, "--target", "isowave_python", "--parallel", jobs)
         place = Path(self.get_ext_fullpath(extension.name))
         place.parent.mkdir(parents=True, exist_ok=True)
         (made,) = (build / "python/isowave").glob("_native*.so")

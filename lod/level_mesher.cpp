@@ -16,6 +16,7 @@
 #include "hold/limit_level.h"
 #include "isowave/error.h"
 #include "lod/option_checks.h"
+#include "lod/regions/part_handles.h"
 #include "lod/simplifier.h"
 #include "lod/voxel_edges.h"
 #include "polygonize/clip.h"
@@ -305,12 +306,19 @@ void LevelMesher::addRegions(LevelMesh& level) {
     report.regions->trianglesInside = count(LocalLevels::Place::inside);
     report.regions->trianglesFading = count(LocalLevels::Place::fading);
     report.regions->trianglesOutside = count(LocalLevels::Place::outside);
+    report.regions->handlesInside = handlesOf(partOf(level.mesh, level.places, true));
+    report.regions->handlesOutside = handlesOf(partOf(level.mesh, level.places, false));
+    report.regions->handlesOfLevel0 = level0_->counts.handles;
     if (options_.adaptive) tellAdaptive(report, choice.summary);
 }
 
 // Silence would mean that the tolerance holds.
 void LevelMesher::tellAdaptive(LevelReport& report, const AdaptiveSummary& summary) const {
     report.regions->adaptive = summary;
+    if (const std::int64_t lost = level0_->counts.handles - report.topology.genus; lost > 0 && !openBorder_)
+        progress_.say(
+            fmt::format("step {}: {} fewer than level 0: holes and rings narrower than the tolerance may go",
+                        report.step, counted(lost, "handle")));
     if (summary.samplesBeyond == 0) return;
     progress_.say(fmt::format(
         "step {}: {} up to {:.3g} away from level 0, more than the {:.3g} of --adaptive", report.step,

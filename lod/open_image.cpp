@@ -313,6 +313,24 @@ Solid::State fitted(SeenImage seen, const std::string& name, const SolidOptions&
 
 }  // namespace
 
+std::vector<double> labelsIn(const std::filesystem::path& path, const SolidOptions& options,
+                             const Progress& progress) {
+    ImageStream stream(path, imageReadOptions(options));
+    const ImageStatistics statistics = statisticsOf(stream, std::nullopt, progress);
+    if (!looksLikeLabels(stream.header(), statistics))
+        throw InputError(
+            path.string(),
+            fmt::format(
+                "is no label image, with at most {} values, all of them whole and none below 0; values "
+                "run from {}",
+                ImageStatistics::kMostDistinct, rangeText(statistics)));
+    std::vector<double> labels;
+    for (const float value : statistics.distinct)
+        if (value != 0) labels.push_back(value);
+    if (labels.empty()) throw InputError(path.string(), "all of its voxels are 0; there is no label");
+    return labels;
+}
+
 Solid::State openImage(const std::filesystem::path& path, const SolidOptions& options,
                        const Progress& progress, StageClock& clock) {
     const std::string name = path.string();

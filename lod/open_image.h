@@ -28,6 +28,11 @@ struct ImagePlanned {
 ImagePlanned planImage(const std::filesystem::path& path, const SolidOptions& options,
                        const Progress& progress);
 
+// The labels of a label image but 0, ascending, as SolidOptions::label takes them. Throws InputError where it is none; what the options
+// say is inside is not looked at.
+std::vector<double> labelsIn(const std::filesystem::path& path, const SolidOptions& options,
+                             const Progress& progress);
+
 // What the readers of images are told. Throws UsageError for a headerless image whose size or type is missing.
 ImageReadOptions imageReadOptions(const SolidOptions& options);
 

@@ -1,10 +1,30 @@
 #include "tools/option_values.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
 namespace isowave::tools {
 namespace {
+
+bool isUnit(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+        return std::isalpha(c) || c >= 0x80 || c == '%' || c == '^' || c == '\'' || c == '"';
+    });
+}
+
+// The number that a unit stands behind, "3" of "3furlong" and "3 furlong"; else empty.
+std::string numberBeforeUnit(const std::string& text) {
+    double value = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error != std::errc() || !std::isfinite(value)) return {};
+    const char* const unit = std::find_if(end, last, [](char c) { return c != ' '; });
+    return isUnit({unit, last}) ? std::string(text.data(), end) : std::string();
+}
 
 template <class Number>
 Number parseWhole(const std::string& text, const char* expected) {
@@ -51,6 +71,8 @@ int levelNumber(const std::string& text) {
 }  // namespace
 
 double number(const std::string& text) {
+    if (const std::string alone = numberBeforeUnit(text); !alone.empty())
+        throw UsageError("'" + text + "' is not a number; a unit is not taken here, write " + alone);
     const double value = parseWhole<double>(text, "a number");
     if (!std::isfinite(value)) throw UsageError("'" + text + "' is not a finite number");
     return value;
@@ -62,18 +84,50 @@ double positive(const std::string& text) {
     return value;
 }
 
+double lengthIn(const std::string& text, std::string_view unit) {
+    if (const std::string alone = numberBeforeUnit(text); !alone.empty())
+        throw UsageError("'" + text + "' is not a number; this length is in " + std::string(unit) +
+                         " and is written without a unit: " + alone);
+    return positive(text);
+}
+
+namespace {
+
+constexpr const char* kUnits =
+    "; the units are voxel (of level 0) and mm (the unit of the coordinates, whatever it is)";
+
+// What stands before the unit, which is taken off; nothing for an unknown one.
+std::optional<Length::Unit> takeUnit(std::string& text) {
+    for (const auto& [name, unit] : {std::pair{"voxels", Length::Unit::voxels},
+                                     {"voxel", Length::Unit::voxels},
+                                     {"mm", Length::Unit::world}})
+        if (text.ends_with(name)) {
+            text.resize(text.size() - std::strlen(name));
+            return unit;
+        }
+    return std::nullopt;
+}
+
+}  // namespace
+
 Length length(const std::string& text) {
-    const std::size_t end = text.find_first_not_of("0123456789.eE+-");
-    const std::string unit = end == text.npos ? "" : text.substr(end);
-    const bool voxels = unit == "voxel" || unit == "voxels";
-    if (end == 0 || (!voxels && unit != "mm"))
-        throw UsageError("'" + text + "' is no length with a unit; write for example 0.1voxel or 0.05mm");
-    return {positive(text.substr(0, end)), voxels ? Length::Unit::voxels : Length::Unit::world};
+    std::string before = text;
+    const std::optional<Length::Unit> unit = takeUnit(before);
+    if (unit && !before.empty()) return {positive(before), *unit};
+    const std::string alone = numberBeforeUnit(text);
+    throw UsageError("'" + text + "' is no length with a unit" +
+                     (alone.empty() ? "; write for example 0.1voxel or 0.05mm"
+                                    : std::string(kUnits) + ", write " + alone + "voxel or " + alone + "mm"));
 }
 
 Length lengthOrNumber(const std::string& text) {
-    const bool hasUnit = text.ends_with("mm") || text.find("voxel") != std::string::npos;
-    return hasUnit ? length(text) : Length{positive(text), Length::Unit::world};
+    std::string before = text;
+    if (const std::optional<Length::Unit> unit = takeUnit(before); unit && !before.empty())
+        return {positive(before), *unit};
+    if (const std::string alone = numberBeforeUnit(text); !alone.empty())
+        throw UsageError("'" + text + "' is no length" + kUnits + ", write " + alone + "voxel or " + alone +
+                         "mm, or " + alone + " which is the same as " + alone + "mm");
+    return {positive(text), Length::Unit::world};
 }
 
 std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high) {

@@ -16,8 +16,14 @@
 
 namespace isowave::tools {
 
-double number(const std::string& text);    // finite
+double number(const std::string& text);    // finite; what has a unit is told to be written alone
 double positive(const std::string& text);  // above 0
+// A length without a unit, above 0. unit: what it is in, for complaints.
+double lengthIn(const std::string& text, std::string_view unit);
+inline constexpr std::string_view kWorldUnits = "the units of the coordinates (mm for images)";
+inline constexpr std::string_view kInputUnits = "the units of the input";
+inline constexpr std::string_view kVoxels = "voxels";
+inline constexpr std::string_view kPixels = "pixels of level 0";
 // 0.1voxel, 0.05mm (mm: world units), above 0.
 Length length(const std::string& text);
 // The same; a number alone is in world units.

@@ -173,6 +173,9 @@ struct RegionSummary {
     // none that a finer level replaces.
     std::int64_t finePoints = 0, coarsePoints = 0;
     std::int64_t trianglesInside = 0, trianglesFading = 0, trianglesOutside = 0;
+    // Handles of the triangles inside, and of all others; those that run across the border between them are in neither. Of level 0:
+    // of the whole.
+    std::int64_t handlesInside = 0, handlesOutside = 0, handlesOfLevel0 = 0;
     // From this mesh to level 0, world units, as LevelReport::rmsToLevel0: of the triangles inside, and of all others.
     std::optional<double> rmsInside, maxInside, rmsOutside, maxOutside;
     std::optional<AdaptiveSummary> adaptive;

@@ -397,7 +397,8 @@ struct CurveRebuildOptions {
     std::vector<Polyline> moved = {};  // the coarse curves after an edit; empty: where they were
     // local: at each point the details turn as the tangent there does, from the subdivided curve before the edit to that after
     // it, before their details are added (Finkelstein and Salesin, "Multiresolution curves", 1994, section 4: details in the
-    // frame of the coarse curve). For curves in the plane. A rigid motion of the coarse curve then is one of every level.
+    // frame of the coarse curve); in space as the points around do, and where these lie on a line, all points. A rigid motion of the
+    // coarse curve then is one of every level; in space not where all of it is straight.
     Frames frames = Frames::global;
     int depth = kAllLevels;                // subdivisions; 0: the coarse curves
     std::optional<double> threshold = {};  // details shorter than this are left out
@@ -409,7 +410,7 @@ struct RebuiltCurves {
     LevelsRebuildReport report;
 };
 // Throws InputError: parts that do not belong together, an edited curve of another size, dimension or closing (which, and what
-// was expected), local frames in space.
+// was expected).
 ISOWAVE_EXPORT RebuiltCurves rebuild(CurveSet set, const CurveRebuildOptions& options = {});
 
 // ---- grids of heights ----
@@ -440,7 +441,7 @@ struct ReliefReportOptions {
     int levels = 2;
     Positions positions = Positions::control;  // of the heights that are returned
     bool compare = false;                      // what the other schemes make of the relief without details
-    bool details = false;                      // the bytes of a file of details too; Rows only
+    bool details = false;                      // the bytes of a file of details too
 };
 
 // The relief at every level. Grids have the samples where they were: sample (r, c) of level k lies where (r 2^k, c 2^k) of
@@ -477,7 +478,8 @@ ISOWAVE_EXPORT ReliefReport reportRelief(const Grid& grid, const ReliefReportOpt
 // Heights from a file of details (`relief --details`), at any level, edited or simplified.
 struct ReliefRebuildOptions {
     // The coarse heights after an edit, as large as coarseHeights(). What lies beyond the relief's own samples (Rows continues
-    // it) moves as the nearest of them does.
+    // it) moves as the nearest of them does. Of Quincunx the samples of the hexagon count, which must be finite; those between them
+    // are not looked at.
     std::optional<Grid> edited = {};
     int depth = kAllLevels;                // subdivisions; 0: the coarse heights
     std::optional<double> threshold = {};  // details smaller than this are left out

@@ -31,22 +31,10 @@ struct Accessors {
     }
 };
 
-// Of a vertex, as it is stored: red, green, blue and alpha in linear light, 65,535 for 1.
-using StoredColour = std::array<std::uint16_t, 4>;
-
 // The distance of the last colour.
 double rangeOf(const MeshView& mesh) {
     if (mesh.distanceRange > 0) return mesh.distanceRange;
     return *std::max_element(mesh.distances.begin(), mesh.distances.end());
-}
-
-StoredColour colourOf(float distance, double range) {
-    StoredColour stored;
-    stored[3] = 65'535;
-    const std::array<double, 3> colour = linearDistanceColour(range > 0 ? distance / range : 0);
-    for (std::size_t k = 0; k < 3; ++k)
-        stored[k] = static_cast<std::uint16_t>(std::lround(65'535 * colour[k]));
-    return stored;
 }
 
 // Positions, normals, distances, colours, indices, in this order.
@@ -153,7 +141,7 @@ void writeGlbAround(Sink& sink, const MeshView& mesh, const std::string& name, c
     for (const float d : mesh.distances) sink.binary(d);
     if (!mesh.distances.empty()) {
         const double range = rangeOf(mesh);
-        for (const float d : mesh.distances) sink.binary(colourOf(d, range));
+        for (const float d : mesh.distances) sink.binary(storedDistanceColour(d, range));
     }
     for (const Triangle& t : mesh.triangles) sink.binary(t);
 }

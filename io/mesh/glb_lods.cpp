@@ -1,10 +1,12 @@
 #include "io/mesh/glb_lods.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/point_box.h"
+#include "io/mesh/distance/distance_colours.h"
 #include "io/mesh/sink.h"
 #include "io/mesh/write.h"
 #include "isowave/error.h"
@@ -64,6 +66,16 @@ json primitiveOf(const Level& level, bool quantized, Layout& layout) {
     return primitive;
 }
 
+// The bytes of distances and colours lie behind those of all levels' shapes: colours are known when the last level is.
+void addDistances(std::size_t vertices, Layout& layout, json& mesh, double range) {
+    json& attributes = mesh["primitives"][0]["attributes"];
+    layout.add(vertices, kFloat, "SCALAR", sizeof(float), kArrayBuffer);
+    attributes["_DISTANCE_TO_LEVEL0"] = layout.last();
+    layout.add(vertices, kUint16, "VEC4", sizeof(StoredColour), kArrayBuffer)["normalized"] = true;
+    attributes["COLOR_0"] = layout.last();
+    mesh["extras"]["distance_of_last_colour"] = range;
+}
+
 }  // namespace
 
 // 8 bytes a vertex when quantized, the last two of them 0: glTF aligns vertices to 4.
@@ -100,7 +112,10 @@ void GlbLods::putNormals(const TriangleMesh& placed) {
             append(binary_, n);
 }
 
-void GlbLods::add(const std::string& name, const TriangleMesh& mesh, double coverage) {
+void GlbLods::add(const std::string& name, const TriangleMesh& mesh, double coverage,
+                  std::vector<float> distances) {
+    assert(distances.empty() || distances.size() == mesh.points.size());
+    assert(levels_.empty() || levels_.front().distances.empty() == distances.empty());
     TriangleMesh placed{mesh.points, mesh.triangles, mesh.normals};
     placeFor(MeshFormat::glb, options_, placed);
     Level level;
@@ -109,14 +124,22 @@ void GlbLods::add(const std::string& name, const TriangleMesh& mesh, double cove
     level.vertices = placed.points.size();
     level.triangles = placed.triangles.size();
     level.normals = !placed.normals.empty();
+    level.distances = std::move(distances);
     putPositions(placed, level);
     putNormals(placed);
     for (const Triangle& t : placed.triangles) append(binary_, t);
     levels_.push_back(std::move(level));
 }
 
+double GlbLods::largestDistance() const {
+    float largest = 0;
+    for (const Level& level : levels_)
+        for (const float d : level.distances) largest = std::max(largest, d);
+    return largest;
+}
+
 // The JSON chunk.
-std::string GlbLods::description() const {
+std::string GlbLods::description(double range) const {
     json gltf{{"asset", {{"version", "2.0"}, {"generator", "isowave"}}}, {"scene", 0}};
     if (options_.space != Space::unspecified)
         gltf["asset"]["extras"]["SPACE"] = options_.space == Space::lps ? "LPS" : "RAS";
@@ -133,6 +156,9 @@ std::string GlbLods::description() const {
         coverage.push_back(level.coverage);
         if (i > 0) coarser.push_back(i);
     }
+    for (std::size_t i = 0; i < levels_.size(); ++i)
+        if (!levels_[i].distances.empty())
+            addDistances(levels_[i].vertices, layout, gltf["meshes"][i], range);
     if (!coarser.empty()) {
         gltf["extensionsUsed"].push_back("MSFT_lod");
         gltf["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = coarser;
@@ -150,10 +176,14 @@ std::string GlbLods::description() const {
     return text;
 }
 
-void GlbLods::write(const std::filesystem::path& path) const {
+void GlbLods::write(const std::filesystem::path& path, double distanceRange) const {
     if (levels_.empty()) throw InputError(path.string(), "no level has a triangle; nothing to write");
-    const std::string text = description();
-    const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
+    const double range = distanceRange > 0 ? distanceRange : largestDistance();
+    const std::string text = description(range);
+    std::uint64_t binary = binary_.size();
+    for (const Level& level : levels_)
+        binary += (sizeof(float) + sizeof(StoredColour)) * level.distances.size();
+    const std::uint64_t total = 12 + 8 + text.size() + 8 + binary;
     if (total > 0xffffffffu)
         throw OperationError(path.string(), "GLB holds at most 4 GiB, these levels take " +
                                                 std::to_string(total) + " bytes; write one file a level");
@@ -163,8 +193,12 @@ void GlbLods::write(const std::filesystem::path& path) const {
     Sink sink(path);
     sink.binary(kMagic, std::uint32_t{2}, u32(total), u32(text.size()), kJson);
     sink.text(text);
-    sink.binary(u32(binary_.size()), kBin);
+    sink.binary(u32(binary), kBin);
     sink.text(binary_);
+    for (const Level& level : levels_) {
+        for (const float d : level.distances) sink.binary(d);
+        for (const float d : level.distances) sink.binary(storedDistanceColour(d, range));
+    }
     sink.finish();
 }
 

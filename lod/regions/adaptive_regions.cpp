@@ -69,14 +69,18 @@ void AdaptiveRegions::see(const DrawnLevel& level, const TriangleMesh& mesh, con
 }
 
 // From a level's surface to level 0's, and back.
-SampledSurface::Far AdaptiveRegions::apart(const TriangleMesh& mesh, bool howFar,
-                                           const Progress& progress) const {
+AdaptiveRegions::Apart AdaptiveRegions::apart(const TriangleMesh& mesh, bool howFar,
+                                              const Progress& progress) const {
     const double aim = kAim * tolerance_;
     const SampledSurface surface(mesh, level0_->spacing());
-    SampledSurface::Far all = surface.farFrom(*level0_, aim, howFar, progress);
-    const SampledSurface::Far back = level0_->farFrom(surface, aim, howFar, progress);
-    all.places.insert(all.places.end(), back.places.begin(), back.places.end());
-    all.largest = std::max(all.largest, back.largest);
+    Apart all{surface.farFrom(*level0_, aim, howFar, progress)};
+    const std::vector<FarPlace> back = level0_->farFrom(surface, aim, howFar, progress);
+    all.places.insert(all.places.end(), back.begin(), back.end());
+    if (!howFar) return all;
+    for (const FarPlace& place : all.places) all.largest = std::max(all.largest, place.distance);
+    // All are within the aim: how near they are takes another look.
+    if (all.places.empty())
+        all.largest = level0_->farthestFrom(surface, surface.farthestFrom(*level0_, 0, progress), progress);
     return all;
 }
 

@@ -58,7 +58,11 @@ class AdaptiveRegions {
     };
     const openvdb::math::Transform& latticeOf(std::size_t level) const { return *seen_[level].lattice; }
     std::array<int, 3> halvingsTo(std::size_t level) const;  // from the level before
-    SampledSurface::Far apart(const TriangleMesh& mesh, bool howFar, const Progress& progress) const;
+    struct Apart {
+        std::vector<FarPlace> places;
+        double largest = 0;  // with howFar: distance of a sample
+    };
+    Apart apart(const TriangleMesh& mesh, bool howFar, const Progress& progress) const;
     Cells badCells(std::size_t level, const BSplineField& field, const TriangleMesh& mesh,
                    const Progress& progress) const;
     std::vector<openvdb::Coord> turned(std::size_t level, const BSplineField& field,

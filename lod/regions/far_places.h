@@ -27,15 +27,26 @@ class SampledSurface {
     // Whether a point is within `limit` of the surface; world units. False where it is empty.
     bool isNear(const Point& point, double limit) const;
 
-    // The samples of this surface that are farther than `limit` from the other one: all of them where that is empty.
-    struct Far {
-        std::vector<FarPlace> places;
-        double largest = 0;  // distance of all samples; HUGE_VAL where the other one is empty
-    };
-    // howFar: without it distances are not looked for, which is faster, and `largest` is 0. The same for any number of threads.
-    Far farFrom(const SampledSurface& other, double limit, bool howFar, const Progress& progress) const;
+    // The samples of this surface that are farther than `limit` from the other one: all of them where that is empty. howFar:
+    // without it their distances are not looked for.
+    std::vector<FarPlace> farFrom(const SampledSurface& other, double limit, bool howFar,
+                                  const Progress& progress) const;
+
+    // The largest distance of a sample of this surface from the other one, or `atLeast` where that is more. What is certainly
+    // nearer than the farthest sample so far is not measured: a tenth of the time of measuring all. REQUIRES: the other one
+    // is not empty.
+    double farthestFrom(const SampledSurface& other, double atLeast, const Progress& progress) const;
+
+    // All of these give the same for any number of threads.
 
   private:
+    // ask(chunk, point) for the samples begin .. end - 1, vertices before triangles, in order; chunks in parallel.
+    template <class Ask>
+    void forSamples(std::size_t begin, std::size_t end, const Progress& progress, const Ask& asker) const;
+    std::size_t chunksOf(std::size_t begin, std::size_t end) const;
+    double farthestOf(std::size_t begin, std::size_t end, const SampledSurface& other, double atLeast,
+                      const Progress& progress) const;
+
     std::vector<Point> points_;
     std::vector<Triangle> triangles_;
     double spacing_;

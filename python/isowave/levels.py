@@ -102,8 +102,8 @@ class CurveDetails:
     ) -> list[Curve]:
         """The curves ``depth`` subdivisions above the coarse ones; without it as they were.
 
-        moved: the coarse curves after an edit, as ``coarse`` has them. frames: "global", details keep their direction; "local", in the
-        plane, they turn with the tangent. threshold: leave out details shorter than this. keep: only that many of the longest of each
+        moved: the coarse curves after an edit, as ``coarse`` has them. frames: "global", details keep their direction; "local", they
+        turn with the curve. threshold: leave out details shorter than this. keep: only that many of the longest of each
         curve. limit: points at their limit positions, on the curve that they control; for looking at.
 
         Raises UsageError for a depth beyond len(self); InputError for edited curves of another size.

@@ -66,17 +66,23 @@ struct WriteChoice {
     MeshWriteOptions options;
     tools::ColourChoice colour;
 
-    // Of every mesh to level 0, which must be there.
-    tools::MeshColours coloursOf(const MadeLadder& made) const {
+    // Of every mesh, with its distances to level 0, which must be there where they are wanted.
+    struct Coloured {
+        std::vector<MeshWriteOptions> each;
+        std::optional<double> range;
+    };
+    Coloured coloured(const MadeLadder& made, const Progress& progress) const {
         colour.requireLevel0(made.choices.levels, made.choices.budgets);
         tools::MeshColours colours(colour);
         if (made.levelCount() > 0) colours.setLevel0(made.mesh(0));
-        return colours;
-    }
-    void write(const std::filesystem::path& path, const MadeLadder& made, std::size_t i,
-               const tools::MeshColours& colours, const Progress& progress) const {
-        const bool isLevel0 = i < made.levelCount() && made.ladder.levels[i].report.step == 0;
-        writeMesh(path, made.mesh(i), format, colours.with(options, made.mesh(i), isLevel0, progress));
+        Coloured all;
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            const bool isLevel0 = i < made.levelCount() && made.ladder.levels[i].report.step == 0;
+            all.each.push_back(colours.with(options, made.mesh(i), isLevel0, progress));
+        }
+        all.range = colours.range();
+        for (MeshWriteOptions& one : all.each) one.distanceRange = all.range.value_or(0);
+        return all;
     }
 };
 
@@ -130,11 +136,12 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
         std::vector<std::string> all = files.levels;
         all.insert(all.end(), files.budgets.begin(), files.budgets.end());
         std::vector<std::filesystem::path> places;
-        const tools::MeshColours colours = choice.coloursOf(made);
+        const WriteChoice::Coloured coloured = choice.coloured(made, progress);
+        files.colourRange = coloured.range;
         try {
             for (std::size_t i = 0; i < all.size(); ++i) {
                 progress("write", static_cast<double>(i) / static_cast<double>(all.size()));
-                choice.write(out.place(all[i]), made, i, colours, progress);
+                writeMesh(out.place(all[i]), made.mesh(i), choice.format, coloured.each[i]);
                 places.push_back(out.folder() / all[i]);
             }
             if (const auto writer = tileChoice.writerFor(out, made.ladder.input, choice.options)) {
@@ -161,7 +168,7 @@ void write(const MadeLadder& made, std::size_t i, const std::filesystem::path& p
     const WriteChoice choice = choiceOf(made, extensionOf(meshFormatOf(path)) + 1, space, colour);
     const py::gil_scoped_release release;
     tools::OutputFile out(path);
-    choice.write(path, made, i, choice.coloursOf(made), {});
+    writeMesh(path, made.mesh(i), choice.format, choice.coloured(made, {}).each[i]);
     out.commit();
 }
 

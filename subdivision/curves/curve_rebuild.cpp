@@ -12,6 +12,7 @@
 #include "subdivision/curves/curve_details.h"
 #include "subdivision/curves/curve_limit.h"
 #include "subdivision/curves/filters_on_demand.h"
+#include "subdivision/curves/space_turns.h"
 
 namespace isowave::subdivision {
 namespace {
@@ -36,6 +37,18 @@ Vector turnOf(Vector from, Vector to) {
     return size > 0 ? to * std::conj(from) / size : Vector(1);
 }
 
+// The displacements of a curve in space, before -> original, turned as before -> after is, and added to `edited`.
+void addTurned(const Polyline& original, const Polyline& before, const Polyline& after, Polyline& edited) {
+    const SpaceTurns turns(before, after);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        const auto d = [&](std::size_t c) {
+            return original.coordinates[3 * i + c] - before.coordinates[3 * i + c];
+        };
+        const Vec3 turned = turns.turned(i, {d(0), d(1), d(2)});
+        for (int c = 0; c < 3; ++c) edited.coordinates[3 * i + static_cast<std::size_t>(c)] += turned[c];
+    }
+}
+
 // One level, local frames: original and edited side by side.
 void refineBoth(const CurveLevels& curve, std::size_t level, const CurveFilters& filters, Polyline& original,
                 Polyline& edited) {
@@ -45,6 +58,7 @@ void refineBoth(const CurveLevels& curve, std::size_t level, const CurveFilters&
     step.coarse = std::move(edited);
     edited = subdivided(step, filters, 1);
     const Polyline after = edited;
+    if (curve.coarse.dimension == 3) return addTurned(original, before, after, edited);
     for (std::size_t i = 0; i < after.size(); ++i) {
         const Vector displacement(original.coordinates[2 * i] - before.coordinates[2 * i],
                                   original.coordinates[2 * i + 1] - before.coordinates[2 * i + 1]);
@@ -102,14 +116,6 @@ class ErrorSum {
     std::size_t count_ = 0;
 };
 
-void requirePlane(const CurveSet& set) {
-    for (std::size_t i = 0; i < set.curves.size(); ++i)
-        if (set.curves[i].coarse.dimension != 2)
-            throw InputError(
-                fmt::format("curve {}", i),
-                "lies in space, and local frames turn curves in the plane; leave --frames local out");
-}
-
 // Levels below this one are not wanted: without their details.
 void cutOff(CurveLevels& curve, int level) {
     curve.details.erase(curve.details.begin(), curve.details.begin() + level);
@@ -162,7 +168,6 @@ std::optional<MovedPoint> firstMovedPoint(const CurveSet& set, const std::vector
 RebuiltCurves rebuild(CurveSet set, const CurveRebuildOptions& options) {
     const std::vector<Polyline> moved = options.moved.empty() ? coarseOf(set) : options.moved;
     requireLikeCoarse(set, moved);
-    if (options.frames == Frames::local) requirePlane(set);
     const CurveScheme scheme = schemeOf(set);
     FiltersOnDemand filtersFor(scheme);
     const int depth = options.depth == kAllLevels ? set.levels : options.depth;

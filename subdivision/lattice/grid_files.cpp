@@ -54,13 +54,13 @@ Picture sized(const Grid& grid) {
 
 }  // namespace
 
-Grid readGrid(const std::filesystem::path& path) {
+Grid readGrid(const std::filesystem::path& path, bool gaps) {
     const std::string name = path.string();
     const Picture picture = readByName(path, name);
     Grid grid{static_cast<std::size_t>(picture.height), static_cast<std::size_t>(picture.width),
               static_cast<std::size_t>(heightChannels(picture)), heights(picture, name)};
     if (grid.rows < 2 || grid.columns < 2) throw InputError(name, "has fewer than 2 rows or columns");
-    requireFinite(grid, name);
+    if (!gaps) requireFinite(grid, name);
     return grid;
 }
 

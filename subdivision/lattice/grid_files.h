@@ -13,8 +13,8 @@ namespace isowave::subdivision {
 //   .asc              ESRI ASCII grid
 //   .png .tif .tiff   heights as stored; colours become their luminance
 // io/picture says which kinds of each are read. Throws InputError: damaged, fewer than 2 rows or columns, samples that
-// are transparent, without data or not finite (how many, and where the first is).
-Grid readGrid(const std::filesystem::path& path);
+// are transparent, without data or, unless `gaps` is true, not finite (how many, and where the first is).
+Grid readGrid(const std::filesystem::path& path, bool gaps = false);
 
 // NumPy, float64: shape (rows, columns) or (rows, columns, channels).
 std::string npyBytes(const Grid& grid);

@@ -42,7 +42,7 @@ SurfaceField rowsField(const Grid& grid, int levels) {
 // The hexagon of side n takes 2n+1 rows and 4n+1 columns of samples; its middle is a used sample.
 SurfaceField quincunxField(const Grid& grid, int levels) {
     const std::size_t unit = std::size_t{1} << levels;
-    const std::size_t n = std::min((grid.rows - 1) / 2, (grid.columns - 1) / 4) / unit * unit;
+    const std::size_t n = quincunxSide(grid.rows, grid.columns, levels);
     if (n == 0)
         refuse(grid, levels,
                std::to_string(2 * unit + 1) + " rows and " + std::to_string(4 * unit + 1) + " columns");
@@ -63,11 +63,7 @@ Grid quincunxPicture(const SurfaceField& field) {
     const auto channels = static_cast<std::size_t>(field.channels);
     Grid grid{static_cast<std::size_t>(2 * n + 1), static_cast<std::size_t>(4 * n + 1), channels, {}};
     grid.values.assign(grid.rows * grid.columns * channels, std::numeric_limits<double>::quiet_NaN());
-    const auto place = [&](Node node) {
-        return (static_cast<std::size_t>(node.y + n) * grid.columns +
-                static_cast<std::size_t>(2 * node.x + node.y + 2 * n)) *
-               channels;
-    };
+    const auto place = [&](Node node) { return quincunxSample(field.patch, node) * channels; };
     for (const Node node : field.patch.nodes()) {
         const std::size_t from = field.patch.index(node) * channels;
         const bool hasNext = node.x < field.patch.high(node.y);
@@ -83,6 +79,16 @@ Grid quincunxPicture(const SurfaceField& field) {
 }
 
 }  // namespace
+
+std::size_t quincunxSide(std::size_t rows, std::size_t columns, int levels) {
+    return std::min((rows - 1) / 2, (columns - 1) / 4) >> levels << levels;
+}
+
+std::size_t quincunxSample(const Patch& hexagon, Node node) {
+    const int n = hexagon.lastRow();
+    return static_cast<std::size_t>(node.y + n) * static_cast<std::size_t>(4 * n + 1) +
+           static_cast<std::size_t>(2 * node.x + node.y + 2 * n);
+}
 
 SurfaceField reliefField(const Grid& grid, ReliefLayout layout, int levels) {
     if (levels < 0 || levels > 24)

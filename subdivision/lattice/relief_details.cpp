@@ -32,7 +32,9 @@ struct Head {
     std::string scheme;
     std::uint32_t levels, channels;
     std::uint64_t rows, columns;
+    ReliefLayout layout = ReliefLayout::Rows;
 };
+constexpr std::uint32_t kQuincunx = 1;  // as the head has it; Rows says nothing
 
 Head headOf(std::string_view bytes) {
     ByteReader reader(bytes);
@@ -42,10 +44,18 @@ Head headOf(std::string_view bytes) {
     head.channels = reader.u32();
     head.rows = reader.u64();
     head.columns = reader.u64();
+    if (!reader.atEnd()) {
+        require(reader.u32() == kQuincunx);
+        head.layout = ReliefLayout::Quincunx;
+    }
     require(head.levels <= kMostLevels && 1 <= head.channels && head.channels <= kMostChannels &&
             reader.atEnd());
+    require(1 <= head.rows && head.rows <= kMostSide && 1 <= head.columns && head.columns <= kMostSide);
     const std::uint64_t unit = std::uint64_t{1} << head.levels;
-    require(unit < head.rows && head.rows <= kMostSide && unit < head.columns && head.columns <= kMostSide);
+    const bool large = head.layout == ReliefLayout::Rows
+                           ? unit < head.rows && unit < head.columns
+                           : quincunxSide(head.rows, head.columns, static_cast<int>(head.levels)) > 0;
+    require(large);
     return head;
 }
 
@@ -54,6 +64,31 @@ int coarseSide(std::uint64_t count, std::uint32_t levels) {
     const std::uint64_t unit = std::uint64_t{1} << levels;
     return static_cast<int>((count - 1 + unit - 1) / unit);
 }
+
+// The coarsest patch, told by its sides: it takes memory of its own, and what the file says must hold first.
+struct CoarsePatch {
+    explicit CoarsePatch(const Head& head) : layout(head.layout) {
+        if (layout == ReliefLayout::Quincunx) {
+            const std::size_t side = quincunxSide(head.rows, head.columns, static_cast<int>(head.levels));
+            a = b = side >> head.levels;
+        } else {
+            a = static_cast<std::uint64_t>(coarseSide(head.columns, head.levels));
+            b = static_cast<std::uint64_t>(coarseSide(head.rows, head.levels));
+        }
+    }
+    std::uint64_t nodesAt(std::uint32_t subdivisions) const {
+        const std::uint64_t x = a << subdivisions, y = b << subdivisions;
+        return layout == ReliefLayout::Quincunx ? 3 * x * (x + 1) + 1 : (x + 1) * (y + 1);
+    }
+    Patch made() const {
+        return layout == ReliefLayout::Quincunx
+                   ? Patch::hexagon(static_cast<int>(a))
+                   : Patch::parallelogram(static_cast<int>(a), static_cast<int>(b));
+    }
+
+    ReliefLayout layout;
+    std::uint64_t a, b;
+};
 
 ReliefParts partsOf(std::string_view bytes) {
     const std::vector<Section> sections = sectionsOf(kFormat, bytes);
@@ -64,20 +99,17 @@ ReliefParts partsOf(std::string_view bytes) {
     };
     const Head head = headOf(content(0, kHead));
     require(sections.size() == 2 + head.levels);
-    const auto a = static_cast<std::uint64_t>(coarseSide(head.columns, head.levels)),
-               b = static_cast<std::uint64_t>(coarseSide(head.rows, head.levels));
-    const auto nodesAt = [&](std::uint32_t level) { return ((a << level) + 1) * ((b << level) + 1); };
-    // Before the patch is made, whose rows take memory of their own.
-    std::vector<double> coarse = inflatedDoubles(content(1, kCoarse), nodesAt(0) * head.channels);
+    const CoarsePatch patch(head);
+    std::vector<double> coarse = inflatedDoubles(content(1, kCoarse), patch.nodesAt(0) * head.channels);
     ReliefParts parts{head.rows,
                       head.columns,
                       {surfaceScheme(head.scheme).name,
-                       {Patch::parallelogram(static_cast<int>(a), static_cast<int>(b)),
-                        static_cast<int>(head.channels), std::move(coarse)},
-                       {}}};
+                       {patch.made(), static_cast<int>(head.channels), std::move(coarse)},
+                       {}},
+                      head.layout};
     for (std::uint32_t step = 0; step < head.levels; ++step)
-        parts.levels.details.push_back(inflatedDoubles(content(2 + step, kDetails),
-                                                       (nodesAt(step + 1) - nodesAt(step)) * head.channels));
+        parts.levels.details.push_back(inflatedDoubles(
+            content(2 + step, kDetails), (patch.nodesAt(step + 1) - patch.nodesAt(step)) * head.channels));
     std::reverse(parts.levels.details.begin(), parts.levels.details.end());
     return parts;
 }
@@ -122,8 +154,15 @@ void drop(SurfaceLevels& levels, const ReliefRebuildOptions& options) {
 // ---- heights
 
 Grid picture(const ReliefParts& parts, const SurfaceField& field, int level) {
+    if (parts.layout == ReliefLayout::Quincunx) return reliefPicture(field, parts.layout);
     const Grid size{parts.rows, parts.columns, 1, {}};
     return withoutPadding(reliefPicture(field, ReliefLayout::Rows), size, level);
+}
+
+// The heights that the relief has of its own: without padding, and without what quincunx fills in.
+Grid ownHeights(const ReliefParts& parts, const SurfaceField& field, int level) {
+    if (parts.layout == ReliefLayout::Rows) return picture(parts, field, level);
+    return {1, field.patch.size(), static_cast<std::size_t>(field.channels), field.values};
 }
 
 void requireSize(const Grid& coarse, const Grid& grid) {
@@ -134,8 +173,24 @@ void requireSize(const Grid& coarse, const Grid& grid) {
         grid.columns, grid.channels, coarse.rows, coarse.columns, coarse.channels));
 }
 
+// The nodes' samples alone count; those between are means, and around the hexagon there are none.
+void moveHexagon(SurfaceField& field, const Grid& after) {
+    const auto channels = static_cast<std::size_t>(field.channels);
+    for (const Node node : field.patch.nodes()) {
+        const std::size_t sample = quincunxSample(field.patch, node);
+        for (std::size_t c = 0; c < channels; ++c) {
+            const double height = after.values[sample * channels + c];
+            if (!std::isfinite(height))
+                throw InputError(fmt::format(
+                    "row {}, column {} holds no finite number, but is a sample of the coarse heights",
+                    sample / after.columns, sample % after.columns));
+            field.values[field.patch.index(node) * channels + c] = height;
+        }
+    }
+}
+
 // c moves by what the edit has changed, beyond the samples by what it has changed at the nearest one.
-void moveCoarse(SurfaceField& field, const Grid& before, const Grid& after) {
+void moveRows(SurfaceField& field, const Grid& before, const Grid& after) {
     const auto rows = static_cast<std::size_t>(field.patch.lastRow() + 1),
                columns = field.patch.size() / rows, channels = before.channels;
     for (std::size_t r = 0; r < rows; ++r)
@@ -151,9 +206,15 @@ void moveCoarse(SurfaceField& field, const Grid& before, const Grid& after) {
             }
 }
 
+// Of those that are numbers.
 double rangeOf(const Grid& grid) {
-    const auto [low, high] = std::minmax_element(grid.values.begin(), grid.values.end());
-    return *high - *low;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const double v : grid.values) {
+        if (std::isnan(v)) continue;
+        low = std::min(low, v);
+        high = std::max(high, v);
+    }
+    return high - low;
 }
 
 PointError differenceOf(const Grid& a, const Grid& b) {
@@ -176,6 +237,7 @@ std::string reliefDetailsBytes(const ReliefParts& parts) {
     head.u32(static_cast<std::uint32_t>(parts.levels.coarse.channels));
     head.u64(parts.rows);
     head.u64(parts.columns);
+    if (parts.layout == ReliefLayout::Quincunx) head.u32(kQuincunx);
     std::vector<Section> sections{{kHead, head.str()},
                                   {kCoarse, deflatedDoubles(parts.levels.coarse.values)}};
     for (std::size_t k = parts.levels.details.size(); k-- > 0;)
@@ -195,7 +257,9 @@ std::optional<MovedSample> firstMovedSample(const Grid& coarse, const Grid& grid
     requireSize(coarse, grid);
     const double allowed = kSameRelief * rangeOf(coarse);
     for (std::size_t k = 0; k < grid.values.size(); ++k) {
-        const double distance = std::abs(grid.values[k] - coarse.values[k]);
+        const double a = grid.values[k], b = coarse.values[k];
+        if (std::isnan(a) && std::isnan(b)) continue;
+        const double distance = std::isnan(a - b) ? HUGE_VAL : std::abs(a - b);
         const std::size_t sample = k / grid.channels;
         if (distance > allowed) return MovedSample{sample / grid.columns, sample % grid.columns, distance};
     }
@@ -226,7 +290,10 @@ RebuiltRelief ReliefDetails::rebuild(const ReliefRebuildOptions& options) const 
             fmt::format("holds details for {} levels, but {} were asked for", levels.levels(), depth));
     if (options.edited) {
         requireSize(coarseHeights(), *options.edited);
-        moveCoarse(levels.coarse, coarseHeights(), *options.edited);
+        if (parts_->layout == ReliefLayout::Quincunx)
+            moveHexagon(levels.coarse, *options.edited);
+        else
+            moveRows(levels.coarse, coarseHeights(), *options.edited);
     }
     const int level = levels.levels() - depth;
     levels.details.erase(levels.details.begin(), levels.details.begin() + level);
@@ -236,10 +303,10 @@ RebuiltRelief ReliefDetails::rebuild(const ReliefRebuildOptions& options) const 
     report.details = allDetails(levels).size();
     SurfaceField field = reconstruct(levels, filters, 0);
     if (options.threshold || options.keep) {
-        const Grid whole = picture(*parts_, field, level);
+        const Grid whole = ownHeights(*parts_, field, level);
         drop(levels, options);
         field = reconstruct(levels, filters, 0);
-        report.error = differenceOf(picture(*parts_, field, level), whole);
+        report.error = differenceOf(ownHeights(*parts_, field, level), whole);
     }
     report.kept = nonzeroCount(levels);
     report.levels = depth;
@@ -247,8 +314,9 @@ RebuiltRelief ReliefDetails::rebuild(const ReliefRebuildOptions& options) const 
     report.positions = options.positions;
     if (options.positions == Positions::limit) field = SurfaceLimit(filters.scheme()).of(field);
     result.heights = picture(*parts_, field, level);
-    report.points = result.heights.rows * result.heights.columns;
-    report.extent = rangeOf(result.heights);
+    const Grid own = ownHeights(*parts_, field, level);
+    report.points = own.rows * own.columns;
+    report.extent = rangeOf(own);
     return result;
 }
 

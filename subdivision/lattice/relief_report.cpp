@@ -144,11 +144,8 @@ ReliefReport reportRelief(const Grid& grid, const ReliefReportOptions& options) 
     report.roundTrip = largest(difference(restored.values, field.values));
     report.reconstructed = pictures.of(restored);
     report.suppressed = pictures.of(places.of(subdivided(parts, filters, options.levels)));
-    if (options.details) {
-        if (options.layout != ReliefLayout::Rows)
-            throw InputError("details are kept of the layout rows; quincunx leaves samples out");
-        report.details = reliefDetailsBytes({grid.rows, grid.columns, parts});
-    }
+    if (options.details)
+        report.details = reliefDetailsBytes({grid.rows, grid.columns, parts, options.layout});
     if (!options.compare) return report;
     for (const auto& name : surfaceSchemeNames()) {
         SurfaceFilters others(surfaceScheme(name));

@@ -13,6 +13,7 @@
 #include "isowave/curves.h"
 #include "isowave/subdivision.h"
 #include "subdivision/curves/curve_details.h"
+#include "subdivision/lattice/relief_details.h"
 
 namespace isowave::fuzz {
 namespace {
@@ -139,11 +140,16 @@ Answer readCurves(std::string_view given) {
 // ---- relief-details
 
 Answer readRelief(std::string_view given) {
-    const auto path = fileOf(mended(given), "relief.details");
-    return answerOf(path.string(), [&] {
-        const auto relief = subdivision::ReliefDetails::load(path);
+    const std::string bytes = mended(given);
+    return answerOf("relief.details", [&] {
+        const auto parts = subdivision::readReliefDetails(bytes, "relief.details");
+        requireFinite(parts.levels.coarse.values);
+        for (const auto& details : parts.levels.details) requireFinite(details);
+        const std::string again = subdivision::reliefDetailsBytes(parts);
+        require(subdivision::reliefDetailsBytes(subdivision::readReliefDetails(again, "again")) == again,
+                "heights change when they are written and read again");
+        const auto relief = subdivision::ReliefDetails::read(bytes, "relief.details");
         const subdivision::Grid coarse = relief.coarseHeights();
-        requireFinite(coarse.values);
         using subdivision::Positions, subdivision::ReliefRebuildOptions;
         constexpr std::size_t kFewSamples = 4096;
         if (coarse.values.size() > kFewSamples) return;

@@ -490,6 +490,16 @@ def curve_details(scheme, curves, mask="", width=0):
     return sections(b"ISOWCURV", (1, head), *parts)
 
 
+def quincunx_details(scheme, levels, channels, rows, columns):
+    side = min((rows - 1) // 2, (columns - 1) // 4) >> levels
+    def nodes(level):
+        return 3 * (side << level) * ((side << level) + 1) + 1
+    head = text(scheme) + struct.pack("<IIQQI", levels, channels, rows, columns, 1)
+    parts = [(2, numbers([i % 5 for i in range(channels * nodes(0))]))]
+    parts += [(3, numbers([i / 100 for i in range(channels * (nodes(k + 1) - nodes(k)))])) for k in range(levels)]
+    return sections(b"ISOWGRID", (1, head), *parts)
+
+
 def relief_details(scheme, levels, channels, rows, columns):
     def side(n):
         return (n - 1 + (1 << levels) - 1) >> levels
@@ -511,6 +521,7 @@ def section_files():
         "curve-details/mask": curve_details("", [(1, 2, [8, 16])], "1/8 1/2 3/4 1/2 1/8", 7),
         "relief-details/heights": relief_details("butterfly-3", 1, 1, 9, 11),
         "relief-details/points": relief_details("loop-2", 2, 3, 9, 9),
+        "relief-details/quincunx": quincunx_details("butterfly-3", 2, 1, 20, 37),
         "relief-details/like": relief_details("loop-like:1/16,1/8", 1, 1, 9, 9),
     }
     for name, (packed, plain) in made.items():

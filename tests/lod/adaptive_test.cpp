@@ -6,6 +6,7 @@
 #include "lod/regions/adaptive_regions.h"
 #include "lod/regions/cell_region.h"
 #include "lod/regions/far_places.h"
+#include "lod/regions/part_handles.h"
 #include "tests/lod/solids.h"
 
 namespace isowave::lod_test {
@@ -333,23 +334,114 @@ TriangleMesh squareAt(double z, double side) {
 
 TEST(FarPlaces, AreTheSamplesBeyondTheLimit) {
     const lod::SampledSurface large(squareAt(0, 8), 0.5), small(squareAt(1, 4), 0.5), none({}, 0.5);
-    EXPECT_TRUE(small.farFrom(large, 1.01, true, {}).places.empty());
-    EXPECT_NEAR(small.farFrom(large, 1.01, true, {}).largest, 1, 1e-12);
+    EXPECT_TRUE(small.farFrom(large, 1.01, true, {}).empty());
     const auto far = large.farFrom(small, 1.5, true, {});
-    EXPECT_NEAR(far.largest, std::sqrt(33.0), 1e-12);
     for (const bool howFar : {true, false}) {
         const auto found = large.farFrom(small, 1.5, howFar, {});
-        ASSERT_EQ(found.places.size(), far.places.size());
-        for (const lod::FarPlace& place : found.places)
-            EXPECT_GT(std::hypot(std::max(0.0, place.at[0] - 4), std::max(0.0, place.at[1] - 4), 1.0), 1.5);
+        ASSERT_EQ(found.size(), far.size());
+        for (const lod::FarPlace& place : found) {
+            const double distance =
+                std::hypot(std::max(0.0, place.at[0] - 4), std::max(0.0, place.at[1] - 4), 1.0);
+            EXPECT_GT(distance, 1.5);
+            if (howFar) {
+                EXPECT_NEAR(place.distance, distance, 1e-12);
+            }
+        }
     }
     // 2 triangles of 23^2 parts each, and 4 corners; about three quarters of them are far.
-    EXPECT_NEAR(static_cast<double>(far.places.size()), 0.65 * (2 * 23 * 23 + 4), 80);
-    EXPECT_EQ(small.farFrom(none, 1, true, {}).places.size(), 4u + 2 * 12 * 12);
-    EXPECT_TRUE(none.farFrom(small, 1, true, {}).places.empty());
+    EXPECT_NEAR(static_cast<double>(far.size()), 0.65 * (2 * 23 * 23 + 4), 80);
+    EXPECT_EQ(small.farFrom(none, 1, true, {}).size(), 4u + 2 * 12 * 12);
+    EXPECT_TRUE(none.farFrom(small, 1, true, {}).empty());
     EXPECT_TRUE(small.isNear({2, 2, 1.5}, 0.6));
     EXPECT_FALSE(small.isNear({2, 2, 1.5}, 0.4));
     EXPECT_FALSE(none.isNear({2, 2, 1.5}, 1e9));
+}
+
+// A torus of n x m squares, each two triangles; those of which `kept` says so.
+template <class Kept>
+TriangleMesh torusPart(std::uint32_t n, std::uint32_t m, const Kept& kept) {
+    TriangleMesh part;
+    part.points.assign(std::size_t{n} * m, Point{});  // places play no part
+    for (std::uint32_t i = 0; i < n; ++i)
+        for (std::uint32_t j = 0; j < m; ++j) {
+            if (!kept(i, j)) continue;
+            const auto at = [&](std::uint32_t a, std::uint32_t b) { return (a % n) * m + b % m; };
+            part.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            part.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return part;
+}
+
+TEST(PartHandles, CountThoseThatLieInThePartWithAllOfThem) {
+    using lod::handlesOf;
+    EXPECT_EQ(handlesOf({}), 0);
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto, auto) { return true; })), 1);
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto i, auto j) { return i > 2 || j > 2; })), 1);  // a hole in it
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto i, auto) { return i < 5; })), 0);             // a tube
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto i, auto j) { return i < 5 && j < 4; })), 0);  // a disc
+    // Two bands, one around each way, that cross: a torus with a hole.
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto i, auto j) { return i < 2 || j < 2; })), 1);
+    // Squares that touch at points alone: discs.
+    EXPECT_EQ(handlesOf(torusPart(8, 6, [](auto i, auto j) { return (i + j) % 2 == 0; })), 0);
+    TriangleMesh two = torusPart(8, 6, [](auto, auto) { return true; });
+    const TriangleMesh other = torusPart(5, 4, [](auto i, auto) { return i > 0; });
+    for (Triangle t : other.triangles) {
+        for (std::uint32_t& v : t) v += 48;
+        two.triangles.push_back(t);
+    }
+    EXPECT_EQ(handlesOf(two), 1);
+}
+
+// Two holes through a thin plate, one of them far narrower than the tolerance: it may close, and that is said. A stud needs details.
+TEST(Adaptive, SaysThatHandlesAreFewerThanThoseOfLevel0) {
+    const auto plate = [](double x, double y, double z) {
+        const auto beyond = [](double v, double half) { return std::max(std::abs(v) - half, 0.0); };
+        const double side = std::hypot(beyond(x - 36.2, 28), beyond(y - 36.3, 28));
+        double d = std::hypot(side, beyond(z - 16.1, 0.4)) - 1.5;
+        d = std::max(d, 1.3 - std::hypot(x - 20.4, y - 20.3));
+        d = std::max(d, 9 - std::hypot(x - 45.4, y - 45.3));
+        return std::min(d, std::max(std::hypot(x - 20.3, y - 55.2) - 1.9, std::abs(z - 22.2) - 6));
+    };
+    const Solid solid = open(distanceImage({72, 72, 40}, plate), {.iso = 0});
+    std::vector<std::string> remarks;
+    Progress progress;
+    progress.remark = [&](std::string_view line) { remarks.emplace_back(line); };
+    const Ladder ladder = makeLadder(solid, within(1.2, {0, 3}), {}, progress);
+    ASSERT_EQ(ladder.levels[0].report.topology.genus, 2);
+    const Level& coarse = ladder.levels[3];
+    ASSERT_TRUE(coarse.report.regions);
+    EXPECT_EQ(coarse.report.regions->handlesOfLevel0, 2);
+    EXPECT_EQ(coarse.report.topology.genus, 1);
+    EXPECT_LE(coarse.report.regions->handlesInside + coarse.report.regions->handlesOutside, 1);
+    EXPECT_THAT(remarks, testing::Contains(HasSubstr("1 handle fewer than level 0")));
+}
+
+// What is left out on the way must not be the farthest: of a wavy surface the largest of all samples, which are made here again.
+TEST(FarPlaces, FarthestIsThatOfAllSamples) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> height(-0.4, 0.4);
+    const int n = 40;
+    TriangleMesh wavy;
+    for (int y = 0; y <= n; ++y)
+        for (int x = 0; x <= n; ++x) wavy.points.push_back({double(x), double(y), height(random)});
+    const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            wavy.triangles.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
+            wavy.triangles.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
+        }
+    const lod::SampledSurface surface(wavy, 0.3), plane(squareAt(0, n), 0.3);
+    for (const lod::SampledSurface* from : {&surface, &plane}) {
+        const lod::SampledSurface& to = from == &surface ? plane : surface;
+        double farthest = 0;  // every sample is farther than nothing at all
+        for (const lod::FarPlace& place : from->farFrom(to, 1e-300, true, {}))
+            farthest = std::max(farthest, place.distance);
+        EXPECT_GT(farthest, 0.3);
+        EXPECT_NEAR(from->farthestFrom(to, 0, {}), farthest, 1e-15);
+        EXPECT_NEAR(from->farthestFrom(to, farthest / 2, {}), farthest, 1e-15);
+        EXPECT_EQ(from->farthestFrom(to, 7, {}), 7);
+    }
+    EXPECT_EQ(lod::SampledSurface({}, 1).farthestFrom(plane, 0.25, {}), 0.25);
 }
 
 }  // namespace

@@ -286,7 +286,7 @@ def test_every_option_of_the_command_is_an_argument():
     shown = command("lod", "--help").stdout
     names = {renamed.get(name, name.replace("-", "_")) for name in re.findall(r"^ *(?:-\w, *)?--([a-z-]+)", shown, re.MULTILINE)}
     assert len(names) > 30 and names - parameters == {
-        "output", "format", "colour", "json", "view", "glb_lods", "tiles", "quiet", "verbose", "dry_run", "list",
+        "output", "format", "colour", "json", "view", "glb_lods", "tiles", "each_label", "quiet", "verbose", "dry_run", "list",
     }  # fmt: skip
     of_curves = {name[2:].replace("-", "_") for name in _native.curve_option_names()}
     assert of_curves <= set(inspect.signature(plane.curves).parameters)

@@ -5,7 +5,7 @@
 
 Neuroglancer's own decoder (its npm package, run by node) unpacks every fragment of every level and sorts its triangles into octants;
 put together they must be closed, oriented and of the level's volume, and each octant's triangles must lie in it. Khronos' validator must
-find no fault in any GLB of the 3D tiles. Both packages: scripts/setup --test. Exit code 77 without them.
+find no fault in any GLB of the 3D tiles, of levels with colours, or of all levels in one. Both packages: scripts/setup --test. Exit code 77 without them.
 """
 import json, os, shutil, struct, subprocess, sys, tempfile
 
@@ -100,6 +100,17 @@ def judge_glb(program, work):
     print(f'{len(tiles)} GLBs, no error and no warning')
 
 
+def judge_levels(program, work):
+    for kind in 'quantized', 'float':
+        run(program, 'lod', PART, '--voxels', 100, '--levels', '0..3', '--format', 'glb', '--colour', 'distance',
+            '--glb-lods', kind, '-o', f'{work}/{kind}')
+        files = [f'{work}/{kind}/{name}' for name in os.listdir(f'{work}/{kind}') if name.endswith('.glb')]
+        if len(files) != 5:
+            raise SystemExit(f'{len(files)} GLBs; expected four levels and one of all')
+        run('node', f'{HERE}/decode.mjs', MODULES, '--glb', *files)
+        print(f'{kind}: {len(files)} GLBs with colours, no error and no warning')
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
     if not shutil.which('node') or not all(os.path.isdir(f'{MODULES}/{m}') for m in ('neuroglancer', 'gltf-validator')):
@@ -108,6 +119,7 @@ def main():
     with tempfile.TemporaryDirectory() as work:
         judge_neuroglancer(program, work)
         judge_glb(program, work)
+        judge_levels(program, work)
     return 0
 
 

@@ -100,5 +100,53 @@ TEST(Parser, SaysWhichOptionLacksItsValue) {
     EXPECT_NE(result.err.find("--iso: '-o' is not a number"), std::string::npos) << result.err;
 }
 
+// A length with a unit where none is taken, or with an unknown one: what to write instead.
+TEST(Lengths, WithAUnitSayWhichUnitTheyAreInAndWhatToWrite) {
+    const struct {
+        std::vector<std::string> arguments;
+        std::string says;
+    } cases[] = {
+        {{"lod", "no.stl", "--voxel", "0.5mm", "-o", "x"},
+         "--voxel: '0.5mm' is not a number; this length is in the units of the coordinates (mm for images) "
+         "and is "
+         "written without a unit: 0.5"},
+        {{"lod", "no.stl", "--voxel", "3 furlong", "-o", "x"}, "written without a unit: 3"},
+        {{"lod", "no.stl", "--close-holes", "2cm", "-o", "x"},
+         "--close-holes: '2cm' is not a number; this length"},
+        {{"lod", "no.stl", "--thicken", "1e-1mm", "-o", "x"}, "without a unit: 1e-1"},
+        {{"lod", "no.stl", "--tolerance", "0.1,0.2mm", "-o", "x"},
+         "--tolerance: '0.2mm' is not a number; this"},
+        {{"lod", "no.nii", "--half-width", "4voxels", "-o", "x"}, "this length is in voxels and is written"},
+        {{"lod", "no.nii", "--band", "2vx", "-o", "x"}, "this length is in voxels and is written"},
+        {{"lod", "no.stl", "--adaptive", "3furlong", "-o", "x"},
+         "--adaptive: '3furlong' is no length; the units are voxel (of level 0) and mm (the unit of the "
+         "coordinates, whatever it is), write 3voxel or 3mm, or 3 which is the same as 3mm"},
+        {{"lod", "no.stl", "--adaptive", "thin", "-o", "x"}, "--adaptive: 'thin' is not a number"},
+        {{"lod", "no.stl", "--adaptive", "0mm", "-o", "x"}, "--adaptive: '0' is not above 0"},
+        {{"pack", "no.stl", "--bound", "3um", "-o", "x.iwz"},
+         "--bound: '3um' is no length with a unit; the units are voxel (of level 0) and mm (the unit of the "
+         "coordinates, whatever it is), write 3voxel or 3mm"},
+        {{"pack", "no.stl", "--bound", "0.1", "-o", "x.iwz"}, "write for example 0.1voxel or 0.05mm"},
+        {{"compare", "a.stl", "b.stl", "--sampling", "1mm"},
+         "--sampling: '1mm' is not a number; this length"},
+        {{"edit", "a.vdb", "--blend", "1mm", "-o", "x.vdb"}, "--blend: '1mm' is not a number; this length"},
+        {{"curves", "a.png", "--flatness", "1px", "-o", "x"}, "this length is in pixels of level 0"},
+        {{"curve-levels", "a.txt", "--threshold", "1km", "-o", "x"},
+         "this length is in the units of the input"},
+        {{"reverse", "a.obj", "--threshold", "1m", "-o", "x.obj"},
+         "this length is in the units of the input"},
+        {{"rebuild", "a.obj", "--threshold", "1m", "-o", "x.obj"}, "this length is in the units of BASE"},
+        {{"lod", "no.nii", "--iso", "300HU", "-o", "x"},
+         "--iso: '300HU' is not a number; a unit is not taken here, write 300"},
+        {{"lod", "no.nii", "--spacing", "1mmx1mmx2mm", "-o", "x"}, "a unit is not taken here, write 1"},
+    };
+    for (const auto& each : cases) {
+        const Result result = isowave(each.arguments);
+        EXPECT_EQ(result.exitCode, 2) << each.says << ": " << result.err;
+        EXPECT_EQ(result.errorLines(), 1) << result.err;
+        EXPECT_NE(result.err.find(each.says), std::string::npos) << each.says << ": " << result.err;
+    }
+}
+
 }  // namespace
 }  // namespace isowave::tools_test

@@ -259,11 +259,24 @@ TEST(LevelDetails, ThatDoNotBelongAreRefusedInOneLine) {
         EXPECT_THAT(result.err, HasSubstr(bad.says));
         EXPECT_EQ(folder.snapshot(), before) << bad.says;
     }
-    EXPECT_EQ(isowave({"relief", (kData / "terrain" / "jacksboro.npy").string(), "-o", at("q"), "--layout",
-                       "quincunx", "--details", at("q.d")})
-                  .exitCode,
-              2);
-    EXPECT_EQ(folder.snapshot(), before);
+}
+
+TEST(RebuildOfQuincunx, GivesWhatReliefHasReconstructedToTheByte) {
+    const Folder folder;
+    const auto at = [&](const std::string& name) { return (folder / name).string(); };
+    succeed({"relief", (kData / "terrain" / "jacksboro.npy").string(), "-o", at("q"), "--layout", "quincunx",
+             "--details", at("q.d")});
+    succeed({"rebuild", at("q/level_2.npy"), "--details", at("q.d"), "-o", at("again.npy")});
+    EXPECT_EQ(contentOf(folder / "again.npy"), contentOf(folder / "q/reconstructed.npy"));
+    succeed({"rebuild", at("q/level_2.npy"), "--details", at("q.d"), "--edited", at("q/level_2.npy"),
+             "--depth", "1", "-o", at("level_1.npy")});
+    EXPECT_EQ(contentOf(folder / "level_1.npy"), contentOf(folder / "q/level_1.npy"));
+    // Of every second sample, a picture without gaps is no base.
+    const Result other = isowave({"rebuild", (kData / "terrain" / "jacksboro.npy").string(), "--details",
+                                  at("q.d"), "-o", at("no.npy")});
+    EXPECT_EQ(other.exitCode, 3);
+    EXPECT_EQ(other.errorLines(), 1) << other.err;
+    EXPECT_FALSE(fs::exists(folder / "no.npy"));
 }
 
 TEST(SubdivisionCommands, RefuseBadInputInOneLine) {

@@ -214,6 +214,32 @@ TEST(GlbLodsOption, PutsAllLevelsIntoOneFileThatTheReportNames) {
     EXPECT_EQ(gltf["nodes"][0]["extras"]["MSFT_screencoverage"], nlohmann::json::array({0.5, 0.25, 0.125}));
 }
 
+nlohmann::json gltfOf(const fs::path& path) {
+    const std::string glb = contentOf(path);
+    std::uint32_t length = 0;
+    std::memcpy(&length, glb.data() + 12, 4);
+    return nlohmann::json::parse(glb.substr(20, length));
+}
+
+// Colours of all meshes of a run can be compared: of the levels' files, of those by budget and of the one of all levels.
+TEST(GlbLodsOption, AllFilesOfARunHaveOneRangeOfColours) {
+    const Folder folder;
+    const std::string part = (folder / "part").string();
+    succeed({"lod", kPart, "--voxels", "32", "--levels", "0..2", "--triangles", "300", "--glb-lods", "float",
+             "--colour", "distance", "--format", "glb", "-o", part});
+    const nlohmann::json report = jsonFile(folder / "part/report.json");
+    const auto range = report["colour_range"].get<double>();
+    EXPECT_LE(range, 1.0001 * std::max(report["levels"][2]["max_to_level0"].get<double>(),
+                                       report["budgets"][0]["max_to_level0"].get<double>()));
+    EXPECT_GT(range, 0);
+    const nlohmann::json lods = gltfOf(folder / "part/part_lods.glb");
+    ASSERT_EQ(lods["meshes"].size(), 3u);
+    for (const auto& mesh : lods["meshes"]) EXPECT_EQ(mesh["extras"]["distance_of_last_colour"], range);
+    for (const char* name : {"part_L0.glb", "part_L1.glb", "part_L2.glb", "part_T300.glb"})
+        EXPECT_EQ(gltfOf(folder / "part" / name)["meshes"][0]["extras"]["distance_of_last_colour"], range)
+            << name;
+}
+
 TEST(GlbLodsOption, NeedsLevels) {
     const Folder folder;
     expectRefusal(

@@ -29,7 +29,7 @@ void CurveOptions::declareDrawing(OptionList& options) {
     options.flag("--smooth", "SVG: cubic Beziers along the zero set instead of straight pieces", draw.smooth);
     options.value("--flatness", "T", "smooth: 0.1; otherwise no added points",
                   "the drawn curve stays within T pixels of level 0 of the zero set, by added points",
-                  [this](const std::string& v) { draw.tolerance = positive(v); });
+                  [this](const std::string& v) { draw.tolerance = lengthIn(v, kPixels); });
 }
 
 void CurveOptions::declareInput(OptionList& options) {
@@ -53,9 +53,9 @@ void CurveOptions::declareFit(OptionList& options) {
                           v, {{"binary", curves2d::Fit::binary}, {"distance", curves2d::Fit::distance}});
                   });
     options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
-                  [this](const std::string& v) { halfWidth = positive(v); });
+                  [this](const std::string& v) { halfWidth = lengthIn(v, "pixels"); });
     options.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
-                  [this](const std::string& v) { band = positive(v); });
+                  [this](const std::string& v) { band = lengthIn(v, "pixels"); });
 }
 
 void CurveOptions::declareEdits(OptionList& options) {

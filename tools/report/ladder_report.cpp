@@ -96,9 +96,11 @@ Json regionsJson(const std::optional<RegionSummary>& r) {
     return {
         {"control_points_fine", r->finePoints},           {"control_points_coarse", r->coarsePoints},
         {"triangles_inside", r->trianglesInside},         {"triangles_fading", r->trianglesFading},
-        {"triangles_outside", r->trianglesOutside},       {"rms_to_level0_inside", orNull(r->rmsInside)},
-        {"max_to_level0_inside", orNull(r->maxInside)},   {"rms_to_level0_outside", orNull(r->rmsOutside)},
-        {"max_to_level0_outside", orNull(r->maxOutside)}, {"adaptive", adaptiveJson(r->adaptive)}};
+        {"triangles_outside", r->trianglesOutside},       {"handles_inside", r->handlesInside},
+        {"handles_outside", r->handlesOutside},           {"handles_level0", r->handlesOfLevel0},
+        {"rms_to_level0_inside", orNull(r->rmsInside)},   {"max_to_level0_inside", orNull(r->maxInside)},
+        {"rms_to_level0_outside", orNull(r->rmsOutside)}, {"max_to_level0_outside", orNull(r->maxOutside)},
+        {"adaptive", adaptiveJson(r->adaptive)}};
 }
 
 Json inputJson(const std::optional<InputDistance>& d) {
@@ -263,6 +265,7 @@ std::string jsonOf(const Ladder& ladder, const LadderFiles& files) {
     if (!files.lods.empty()) report["glb_lods"] = files.lods;
     if (!files.view.empty()) report["view"] = files.view;
     if (!files.tiles.empty()) report["tiles"] = files.tiles;
+    if (files.colourRange) report["colour_range"] = *files.colourRange;
     report["steps"] = ladder.steps;
     report["coefficients_stored"] = ladder.coefficientsStored;
     report["control_points"] = ladder.controlPoints;

@@ -1,6 +1,7 @@
 // What `isowave lod` tells: report.json, and the table and the lines on standard output. Functions of the ladder alone.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,10 @@ namespace isowave::tools {
 // What the files of the meshes are called, one for each of ladder.levels and ladder.budgets; "" where there is none.
 struct LadderFiles {
     std::vector<std::string> levels, budgets;
-    std::string lods = {};   // the file of --glb-lods
-    std::string view = {};   // the page of --view
-    std::string tiles = {};  // the folder of --tiles
+    std::string lods = {};                   // the file of --glb-lods
+    std::string view = {};                   // the page of --view
+    std::string tiles = {};                  // the folder of --tiles
+    std::optional<double> colourRange = {};  // of --colour distance
 };
 
 // The bytes of report.json.

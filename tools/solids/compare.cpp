@@ -36,7 +36,7 @@ class Compare : public Command {
         declareJson();
         options_.value("--sampling", "LEN", "1/500 of the diagonal",
                        "largest distance of a point of the surface to a sample",
-                       [this](const std::string& v) { sampling_ = positive(v); });
+                       [this](const std::string& v) { sampling_ = lengthIn(v, kWorldUnits); });
         declareThreads();
         declareTalk();
     }

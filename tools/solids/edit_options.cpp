@@ -13,7 +13,7 @@ void EditChoices::declare(OptionList& options) {
     options.value("--blend", "R", "sharp",
                   "where a tool of --add or --cut meets the surface the edge becomes a fillet of radius R "
                   "(world units)",
-                  [this](const std::string& v) { how.blend = positive(v); });
+                  [this](const std::string& v) { how.blend = lengthIn(v, kWorldUnits); });
     options.value("--max-memory", "GB", "70 % of this computer's",
                   "refuse tools that would take more, as far as can be told beforehand",
                   [this](const std::string& v) { how.maxMemory = positive(v) * kBytesPerGigabyte; });

@@ -28,6 +28,7 @@
 #include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
 #include "tools/solids/dry_run_text.h"
+#include "tools/solids/labels/each_label.h"
 #include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/parts.h"
@@ -53,13 +54,15 @@ struct MeshWriter {
     std::unique_ptr<TileWriter> tiles;  // of --tiles
     Progress progress;
     LadderFiles files;
+    std::vector<std::filesystem::path> written = {};
     double firstVoxel = 0;
     bool fromLevel0 = false;  // the page's first level is level 0, which the reports' distances are to
 
     template <class Report>
     void write(const std::string& name, const Report& report, const TriangleMesh& mesh,
-               bool isLevel0 = false) {
-        writeMesh(out.place(name), mesh, format, colours.with(options, mesh, isLevel0, progress));
+               const MeshWriteOptions& with) {
+        written.push_back(out.place(name));
+        writeMesh(written.back(), mesh, format, with);
         if (!page) return;
         view::LevelFacts facts = factsOf(report, names.suffixOf(name), fromLevel0);
         facts.file = name;
@@ -69,14 +72,17 @@ struct MeshWriter {
         const auto level = [this](const LevelReport& report, const TriangleMesh& mesh) {
             files.levels.push_back(names.ofLevel(report));
             fromLevel0 = fromLevel0 || report.step == 0;
-            if (lods) lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report));
             if (tiles) addTiles(*tiles, report, mesh, progress);
             if (report.step == 0) colours.setLevel0(mesh);
-            write(files.levels.back(), report, mesh, report.step == 0);
+            const MeshWriteOptions with = colours.with(options, mesh, report.step == 0, progress);
+            if (lods)
+                lods->add(names.suffixOf(files.levels.back()), mesh, coverageOf(report),
+                          with.distanceToLevel0);
+            write(files.levels.back(), report, mesh, with);
         };
         const auto budget = [this](const BudgetReport& report, const TriangleMesh& mesh) {
             files.budgets.push_back(names.ofBudget(report));
-            write(files.budgets.back(), report, mesh);
+            write(files.budgets.back(), report, mesh, colours.with(options, mesh, false, progress));
         };
         return {level, budget, releaseFreedMemory};
     }
@@ -90,7 +96,12 @@ struct MeshWriter {
     void writeLods() {
         if (!lods) return;
         files.lods = names.ofLods();
-        lods->write(out.place(files.lods));
+        lods->write(out.place(files.lods), colours.range().value_or(0));
+    }
+    // One range of colours for all meshes: known when the last one has been measured.
+    void recolour() {
+        files.colourRange = colours.range();
+        for (const std::filesystem::path& file : written) colours.recolour(file, format);
     }
     void writePage() {
         if (!page) return;
@@ -136,6 +147,18 @@ std::vector<std::string> leftFromBefore(const OutputFolder& out, const LadderFil
     return left;
 }
 
+// The report and the text of a run, and which files it has made.
+struct Told {
+    std::string json, text;
+    LadderFiles files;
+};
+
+Told toldOf(const Made& made) {
+    return {jsonOf(made.ladder, made.files), textOf(made.ladder, made.files, made.unit), made.files};
+}
+
+Told toldOf(const LabelLadders& made) { return {jsonOf(made), textOf(made), {made.written, {}}}; }
+
 void tellOfWhatIsLeft(const OutputFolder& out, const LadderFiles& files, const Progress& progress) {
     const std::vector<std::string> left = leftFromBefore(out, files);
     if (left.empty()) return;
@@ -169,13 +192,13 @@ PartStory storyOf(const Made& made, const OutputFolder& out) {
 }
 
 // What can fail for want of room comes first; then only names change.
-void finish(const Made& made, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
-    tellOfWhatIsLeft(out, made.files, console.progress());
-    const std::string json = withRemarks(jsonOf(made.ladder, made.files), console.remarks());
+void finish(const Told& told, bool toStdout, AtomicFile* copy, OutputFolder& out, Console& console) {
+    tellOfWhatIsLeft(out, told.files, console.progress());
+    const std::string json = withRemarks(told.json, console.remarks());
     writeReport(json, out);
     if (copy) writeWhole(*copy, json);
     console.progress().check();
-    console.print(toStdout ? json : textOf(made.ladder, made.files, made.unit));
+    console.print(toStdout ? json : told.text);
     console.flush();
     out.commit();
     if (copy) copy->commit();
@@ -205,6 +228,8 @@ class Lod : public Command {
     MeshNames namesIn(const OutputFolder& out) const;
     Made make(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
               const Progress& progress) const;
+    LabelLadders makeLabels(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+                            const Progress& progress) const;
     void refuseTaken(const MeshNames& names, OutputFolder& out) const;
     std::optional<GlbLods> lodsOf(const Solid& solid) const;
     // Nothing without --view.
@@ -219,6 +244,7 @@ class Lod : public Command {
     SpaceChoice space_;
     ColourChoice colour_;
     TileChoice tiles_;
+    LabelChoice labels_;
     bool view_ = false;
     std::optional<bool> quantizedLods_;  // --glb-lods
 };
@@ -267,6 +293,7 @@ Lod::Lod()
                        quantizedLods_ = choice<bool>(v, {{"quantized", true}, {"float", false}});
                    });
     tiles_.declare(options_);
+    labels_.declare(options_);
     options_.flag("--view", "also a page to look at, name.html, as isowave view makes it", view_);
     declareMesh(options_, levels_, /*features=*/true);
     declareRegions(options_, levels_);
@@ -303,6 +330,8 @@ void Lod::check() {
     if (quantizedLods_ && budgets_.any() && !levels_.levels && !levels_.steps)
         throw UsageError("--glb-lods holds levels, and with a budget there are none; give --levels too");
     tiles_.requireLevels(levels_, budgets_);
+    labels_.check(format_.value_or(MeshFormat::ply), budgets_, view_, quantizedLods_.has_value(),
+                  tiles_.format.has_value());
     lod::requireNoRegions(budgets_, levels_);
     if (budgets_.any()) budgets_.maxGenus = levels_.maxGenus;
     lod::checkBudgets(budgets_, solid_.openBorder);
@@ -335,6 +364,7 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
                       .progress = progress,
                       .files = {}};
     Ladder ladder = makeBudget(std::move(solid), budgets_, levels_, writer.visitor(), progress);
+    writer.recolour();
     writer.writeLods();
     if (writer.tiles) {
         writer.tiles->finish();
@@ -342,6 +372,16 @@ Made Lod::make(const std::filesystem::path& input, const MeshNames& names, Outpu
     }
     writer.writePage();
     return {std::move(ladder), std::move(writer.files), unit};
+}
+
+LabelLadders Lod::makeLabels(const std::filesystem::path& input, const MeshNames& names, OutputFolder& out,
+                             const Progress& progress) const {
+    const auto options = [this](const Solid& solid) {
+        return MeshWriteOptions{space_.of(solid), metresPerUnitOf(solid)};
+    };
+    return makeEachLabel(
+        input, withSlabsBeside(solid_, out.folder()), levels_, names, options,
+        [&](const std::string& name) { return out.place(name); }, progress);
 }
 
 int Lod::run(Console& console) {
@@ -366,8 +406,10 @@ int Lod::runOne(Console& console) {
         copy.emplace(*json_);
     }
     try {
-        const Made made = make(arguments[0], names, out, console.progress());
-        finish(made, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
+        const Progress progress = console.progress();
+        const Told told = labels_.each ? toldOf(makeLabels(arguments[0], names, out, progress))
+                                       : toldOf(make(arguments[0], names, out, progress));
+        finish(told, jsonToStandardOutput(), copy ? &*copy : nullptr, out, console);
         if (copyFolders) copyFolders->commit();
     } catch (const OperationError& error) {
         throw OperationError(out.publicText(error.what()));
@@ -378,6 +420,7 @@ int Lod::runOne(Console& console) {
 // --json has what became of each input; the reports are in the folders.
 int Lod::runParts(Console& console) {
     check();
+    if (labels_.each) throw UsageError("--each-label takes one image; start isowave once for each");
     const std::vector<std::filesystem::path> inputs = parts_.inputs(arguments);
     std::vector<Part> parts = partsOf(inputs, *output_);
     if (jsonToFile()) refuseAmong(parts, *json_);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/mesh/distance/recolour_glb.h"
 #include "isowave/error.h"
 #include "tools/option_values.h"
 
@@ -40,11 +43,20 @@ void MeshColours::setLevel0(const TriangleMesh& mesh) {
 }
 
 MeshWriteOptions MeshColours::with(MeshWriteOptions plain, const TriangleMesh& mesh, bool isLevel0,
-                                   const Progress& progress) const {
+                                   const Progress& progress) {
     if (!choice_.distance) return plain;
     plain.distanceToLevel0 =
         isLevel0 ? std::vector<float>(mesh.points.size(), 0.0F) : level0_->ofVertices(mesh, progress);
+    for (const float d : plain.distanceToLevel0) largest_ = std::max(largest_, d);
     return plain;
+}
+
+std::optional<double> MeshColours::range() const {
+    return choice_.distance ? std::optional<double>(largest_) : std::nullopt;
+}
+
+void MeshColours::recolour(const std::filesystem::path& file, MeshFormat format) const {
+    if (choice_.distance && format == MeshFormat::glb) recolourGlb(file, largest_);
 }
 
 }  // namespace isowave::tools

@@ -43,15 +43,15 @@ void declareInside(OptionList& options, SolidOptions& solid) {
     options.value("--voxels", "N", "256", "meshes: sample with N voxels along the longest axis",
                   [&](const std::string& v) { solid.voxels = integer(v, 4, 1'000'000'000); });
     options.value("--voxel", "LEN", "", "meshes: sample with voxels of this size (world units)",
-                  [&](const std::string& v) { solid.voxel = positive(v); });
+                  [&](const std::string& v) { solid.voxel = lengthIn(v, kWorldUnits); });
     options.value("--close-holes", "WIDTH", "1/6 of the diagonal, unless the area is large",
                   "open meshes: fill holes up to this width (world units)",
-                  [&](const std::string& v) { solid.closeHoles = positive(v); });
+                  [&](const std::string& v) { solid.closeHoles = lengthIn(v, kWorldUnits); });
     options.value("--thicken", "T", "",
                   "meshes: the solid is what lies within T/2 of the triangles; makes a plate of a sheet, at "
                   "least 2 voxels "
                   "thick (world units)",
-                  [&](const std::string& v) { solid.thicken = positive(v); });
+                  [&](const std::string& v) { solid.thicken = lengthIn(v, kWorldUnits); });
     options.value("--unit", "mm|cm|m|in|ft", "mm",
                   "meshes: what their coordinates are measured in; coordinates stay as they are, GLB (in "
                   "metres) and the "
@@ -72,9 +72,9 @@ void declareFit(OptionList& options, SolidOptions& solid) {
                                                         {"distance", FitMethod::distance}});
                   });
     options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
-                  [&](const std::string& v) { solid.halfWidth = positive(v); });
+                  [&](const std::string& v) { solid.halfWidth = lengthIn(v, kVoxels); });
     options.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
-                  [&](const std::string& v) { solid.band = positive(v); });
+                  [&](const std::string& v) { solid.band = lengthIn(v, kVoxels); });
 }
 
 // Of the triangles of a mesh, or of level 0.
@@ -256,7 +256,10 @@ void declareBudgets(OptionList& options, BudgetOptions& budgets, LevelOptions& l
     options.value("--tolerance", "D,D,...", "",
                   "the fewest triangles that stay within D (world units) of the mesh that was read, of "
                   "level 0 for images, both ways: name_DD",
-                  [&](const std::string& v) { budgets.tolerances = list(v, positive); });
+                  [&](const std::string& v) {
+                      budgets.tolerances =
+                          list(v, [](const std::string& d) { return lengthIn(d, kWorldUnits); });
+                  });
     options.value(
         "--max-genus", "N", "",
         "at most N handles in every mesh: holes are filled or their rings cut, whichever takes less volume",

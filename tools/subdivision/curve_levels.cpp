@@ -71,7 +71,7 @@ CurveLevels::CurveLevels()
         "--points", "N", "as they are", "first put N points at equal steps along each curve",
         [this](const std::string& v) { report_.resample = static_cast<std::size_t>(integer(v, 2, kHuge)); });
     options_.value("--threshold", "LEN", "", "drop details shorter than this, into thresholded",
-                   [this](const std::string& v) { report_.threshold = positive(v); });
+                   [this](const std::string& v) { report_.threshold = lengthIn(v, kInputUnits); });
     options_.value(
         "--keep", "N", "", "keep only the N longest details of each curve, into thresholded",
         [this](const std::string& v) { report_.keep = static_cast<std::size_t>(integer(v, 0, kHuge)); });

@@ -83,13 +83,12 @@ Rebuild::Rebuild()
                    details_);
     options_.input("--edited", "BASE with moved vertices or other heights, which takes its place", edited_);
     options_.value("--frames", "global|local", "global",
-                   "details keep their direction in space, or turn with the surface or curve (--edited; "
-                   "curves in the plane)",
+                   "details keep their direction in space, or turn with the surface or curve (--edited)",
                    [this](const std::string& v) {
                        frames_ = choice<Frames>(v, {{"global", Frames::global}, {"local", Frames::local}});
                    });
     options_.value("--threshold", "LEN", "", "leave out details shorter than this, in the units of BASE",
-                   [this](const std::string& v) { threshold_ = positive(v); });
+                   [this](const std::string& v) { threshold_ = lengthIn(v, "the units of BASE"); });
     options_.value("--keep", "N", "", "only the N longest details; of each curve",
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     options_.flag("--error-table", "meshes: the error that is left with the longest 0 to 50 % of the details",

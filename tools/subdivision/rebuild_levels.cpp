@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "isowave/error.h"
@@ -67,7 +68,9 @@ void requireFormat(const std::filesystem::path& output, const std::string& exten
 }
 
 Grid readCoarseHeights(const std::filesystem::path& path, const Grid& coarse) {
-    Grid grid = readGrid(path);
+    const bool gaps = std::any_of(coarse.values.begin(), coarse.values.end(),
+                                  [](double v) { return std::isnan(v); });  // of quincunx, around the hexagon
+    Grid grid = readGrid(path, gaps);
     ofFile(path, [&] { firstMovedSample(coarse, grid); });
     return grid;
 }

@@ -67,7 +67,7 @@ Relief::Relief()
                            v, {{"rows", ReliefLayout::Rows}, {"quincunx", ReliefLayout::Quincunx}});
                    });
     options_.result("--details", "FILE",
-                    "everything that rebuild needs to have the heights back from the coarsest level (rows)",
+                    "everything that rebuild needs to have the heights back from the coarsest level",
                     details_);
     options_.flag("--limit",
                   "write levels and suppressed at their limit positions, on the surface that each controls; "
@@ -84,8 +84,6 @@ int Relief::run(Console& console) {
     report_.positions = positionsOf(limit_);
     if (limit_) asked("--limit", [&] { return SurfaceLimit(surfaceScheme(report_.scheme)); });
     report_.details = details_.has_value();
-    if (details_ && report_.layout == ReliefLayout::Quincunx)
-        throw UsageError("--details: belongs to --layout rows; quincunx leaves samples out");
     OutputFolder out(*output_, Inputs(arguments));
     if (jsonToFile()) out.keepFree(*json_);
     if (details_) out.keepFree(*details_);

@@ -66,7 +66,7 @@ Reverse::Reverse()
     options_.result("--details", "FILE", "the file that gets the details", details_);
     options_.value("--threshold", "LEN", "",
                    "leave details shorter than this, in the units of the mesh, out of the file",
-                   [this](const std::string& v) { threshold_ = positive(v); });
+                   [this](const std::string& v) { threshold_ = lengthIn(v, kInputUnits); });
     options_.value("--keep", "N", "", "only the N longest details go into the file, which is smaller then",
                    [this](const std::string& v) { keep_ = static_cast<std::size_t>(integer(v, 0, kHuge)); });
     declareTalk();

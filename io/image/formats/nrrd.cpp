@@ -523,18 +523,35 @@ void takeVoxels(const fs::path& path, const NrrdText& text, std::int64_t needed,
 
 // ---- segmentations of 3D Slicer
 
-// "Segment3_Name" of each segment, with its label and, counted from 1, its layer:
+// "Segment3_Name", or what else there is of segment 3; empty where it is not.
+std::string segmentNote(const NrrdText& text, int segment, const char* key) {
+    const auto at = text.note.find(fmt::format("Segment{}_{}", segment, key));
+    return at == text.note.end() ? std::string() : at->second;
+}
+
+bool hasSegment(const NrrdText& text, int segment) {
+    return text.note.contains(fmt::format("Segment{}_Name", segment));
+}
+
+// "0.5 0.25 1"; nothing where it is no colour.
+std::optional<std::array<std::uint8_t, 3>> colourOf(const std::string& text) {
+    std::istringstream in(text);
+    std::array<std::uint8_t, 3> colour{};
+    for (std::uint8_t& c : colour) {
+        double share = -1;
+        if (!(in >> share) || !(share >= 0 && share <= 1)) return std::nullopt;
+        c = static_cast<std::uint8_t>(std::lround(255 * share));
+    }
+    return colour;
+}
+
+// Of each segment its label and, counted from 1, its layer:
 // "volume 1: liver = 1, tumour = 2; volume 2: vessel = 1".
 std::string segmentsText(const NrrdText& text, bool layers) {
     std::map<std::int64_t, std::vector<std::string>> found;
-    for (int i = 0; text.note.contains(fmt::format("Segment{}_Name", i)); ++i) {
-        const auto note = [&](const char* key) {
-            const auto at = text.note.find(fmt::format("Segment{}_{}", i, key));
-            return at == text.note.end() ? std::string() : at->second;
-        };
-        found[layers ? std::atoll(note("Layer").c_str()) : 0].push_back(note("Name") + " = " +
-                                                                        note("LabelValue"));
-    }
+    for (int i = 0; hasSegment(text, i); ++i)
+        found[layers ? std::atoll(segmentNote(text, i, "Layer").c_str()) : 0].push_back(
+            segmentNote(text, i, "Name") + " = " + segmentNote(text, i, "LabelValue"));
     std::string result;
     for (const auto& [layer, names] : found)
         result += fmt::format("{}{}{}", result.empty() ? "" : "; ",
@@ -547,6 +564,16 @@ std::string segmentsText(const NrrdText& text, bool layers) {
 
 std::vector<std::string> nrrdVoxelFiles(const fs::path& path) {
     return voxelFiles(path.string(), nrrdText(path));
+}
+
+std::vector<ImageSegment> nrrdSegments(const fs::path& path) {
+    const NrrdText text = nrrdText(path);
+    std::vector<ImageSegment> segments;
+    for (int i = 0; hasSegment(text, i); ++i)
+        segments.push_back({std::atof(segmentNote(text, i, "LabelValue").c_str()),
+                            oneLine(segmentNote(text, i, "Name")), colourOf(segmentNote(text, i, "Color")),
+                            std::atoi(segmentNote(text, i, "Layer").c_str())});
+    return segments;
 }
 
 StoredVolume readNrrdHeader(const fs::path& path) {

@@ -40,4 +40,12 @@ std::array<double, 3> linearDistanceColour(double share) {
     return colour;
 }
 
+StoredColour storedDistanceColour(float distance, double range) {
+    constexpr std::uint16_t kOne = 65'535;
+    StoredColour stored{0, 0, 0, kOne};
+    const std::array<double, 3> colour = linearDistanceColour(range > 0 ? distance / range : 0);
+    for (std::size_t k = 0; k < 3; ++k) stored[k] = static_cast<std::uint16_t>(std::lround(kOne * colour[k]));
+    return stored;
+}
+
 }  // namespace isowave

@@ -45,25 +45,30 @@ Scale scaleFor(double metresPerUnit) {
 }
 
 // Okabe and Ito's colours, which the colour-blind tell apart, without black (jfly.uni-koeln.de/color).
-constexpr std::string_view kColours[] = {"#E69F00", "#56B4E9", "#009E73", "#F0E442",
-                                         "#0072B2", "#D55E00", "#CC79A7", "#999999"};
+constexpr ModelColour kColours[] = {{0xE6, 0x9F, 0x00}, {0x56, 0xB4, 0xE9}, {0x00, 0x9E, 0x73},
+                                    {0xF0, 0xE4, 0x42}, {0x00, 0x72, 0xB2}, {0xD5, 0x5E, 0x00},
+                                    {0xCC, 0x79, 0xA7}, {0x99, 0x99, 0x99}};
+
+// An object of the model: triangles of a mesh, with the points that they use.
+struct Piece {
+    std::string name;  // escaped
+    ModelColour colour;
+    std::span<const Point> points;
+    std::span<const Triangle> triangles;
+    bool wide;  // float64
+};
 
 class ModelText {
   public:
-    ModelText(const MeshView& mesh, const std::string& title)
-        : mesh_(mesh),
-          title_(escaped(title)),
-          scale_(scaleFor(mesh.metresPerUnit)),
-          wide_(needsFloat64(mesh)),
-          parts_(solidParts(mesh.points, mesh.triangles)),
-          number_(mesh.points.size(), kNone) {}
+    ModelText(const std::vector<Piece>& pieces, const std::string& title, Space space, double metresPerUnit)
+        : pieces_(pieces), title_(escaped(title)), space_(space), scale_(scaleFor(metresPerUnit)) {}
 
     std::string make() {
         begin();
         materials();
-        for (std::size_t i = 0; i < parts_.size(); ++i) object(i);
+        for (std::size_t i = 0; i < pieces_.size(); ++i) object(i);
         out_.text("</resources>\n<build>\n");
-        for (std::size_t i = 0; i < parts_.size(); ++i)
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
             out_.text(fmt::format("<item objectid=\"{}\"/>\n", idOf(i)));
         out_.text("</build>\n</model>\n");
         return out_.take();
@@ -73,10 +78,7 @@ class ModelText {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     static constexpr int kMaterials = 1;  // their id; objects follow
 
-    static std::size_t idOf(std::size_t part) { return kMaterials + 1 + part; }
-    std::string nameOf(std::size_t part) const {
-        return parts_.size() == 1 ? title_ : fmt::format("{} {}", title_, part + 1);
-    }
+    static std::size_t idOf(std::size_t piece) { return kMaterials + 1 + piece; }
 
     void begin() {
         out_.text(
@@ -85,33 +87,37 @@ class ModelText {
                         "<metadata name=\"Title\">{}</metadata>\n"
                         "<metadata name=\"Application\">isowave</metadata>\n",
                         scale_.unit, title_));
-        if (mesh_.space != Space::unspecified)
-            out_.text("<metadata name=\"Description\">" + mesh_.comments().back() + "</metadata>\n");
+        if (space_ != Space::unspecified)
+            out_.text(fmt::format("<metadata name=\"Description\">SPACE={}</metadata>\n",
+                                  space_ == Space::lps ? "LPS" : "RAS"));
         out_.text("<resources>\n");
     }
 
     void materials() {
-        if (parts_.empty()) return;
+        if (pieces_.empty()) return;
         out_.text(fmt::format("<basematerials id=\"{}\">\n", kMaterials));
-        for (std::size_t i = 0; i < parts_.size(); ++i)
-            out_.text(fmt::format("<base name=\"{}\" displaycolor=\"{}\"/>\n", nameOf(i),
-                                  kColours[i % std::size(kColours)]));
+        for (const Piece& piece : pieces_)
+            out_.text(
+                fmt::format("<base name=\"{}\" displaycolor=\"{}\"/>\n", piece.name, textOf(piece.colour)));
         out_.text("</basematerials>\n");
     }
 
-    void object(std::size_t part) {
+    void object(std::size_t i) {
+        const Piece& piece = pieces_[i];
         out_.text(fmt::format(
             "<object id=\"{}\" type=\"model\" name=\"{}\" pid=\"{}\" pindex=\"{}\">\n<mesh>\n<vertices>\n",
-            idOf(part), nameOf(part), kMaterials, part));
+            idOf(i), piece.name, kMaterials, i));
+        if (i == 0 || piece.points.data() != pieces_[i - 1].points.data())
+            number_.assign(piece.points.size(), kNone);  // pieces of one mesh share no points
         std::uint32_t count = 0;
-        for (const Triangle& t : parts_[part])
+        for (const Triangle& t : piece.triangles)
             for (const std::uint32_t v : t)
                 if (number_[v] == kNone) {
                     number_[v] = count++;
-                    vertex(mesh_.points[v]);
+                    vertex(piece.points[v], piece.wide);
                 }
         out_.text("</vertices>\n<triangles>\n");
-        for (const Triangle& t : parts_[part]) {
+        for (const Triangle& t : piece.triangles) {
             out_.number("<triangle v1=\"", number_[t[0]]);
             out_.number("\" v2=\"", number_[t[1]]);
             out_.number("\" v3=\"", number_[t[2]]);
@@ -121,11 +127,11 @@ class ModelText {
     }
 
     // A number is float32 or float64, whichever is printed; 3MF's ST_Number has exponents.
-    void vertex(const Point& p) {
+    void vertex(const Point& p, bool wide) {
         constexpr const char* kBefore[] = {"<vertex x=\"", "\" y=\"", "\" z=\""};
         for (std::size_t a = 0; a < 3; ++a) {
             const double x = scale_.factor * p[a];
-            if (wide_)
+            if (wide)
                 out_.number(kBefore[a], x);
             else
                 out_.number(kBefore[a], static_cast<float>(x));
@@ -133,12 +139,11 @@ class ModelText {
         out_.text("\"/>\n");
     }
 
-    const MeshView& mesh_;
+    const std::vector<Piece>& pieces_;
     std::string title_;
+    Space space_;
     Scale scale_;
-    bool wide_;
-    std::vector<std::vector<Triangle>> parts_;
-    std::vector<std::uint32_t> number_;  // of a point in its object; parts share none
+    std::vector<std::uint32_t> number_;  // of a point in its object
     Sink out_;
 };
 
@@ -215,13 +220,55 @@ class Packing {
 
 }  // namespace
 
-void writeThreeMf(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title) {
-    const std::string model = ModelText(mesh, title).make();
+namespace {
+
+void pack(Sink& sink, const std::string& model, const std::string& name) {
     Packing packing(name);
     packing.add("[Content_Types].xml", kTypes);
     packing.add("_rels/.rels", kRelations);
     packing.add(kModel, model);
     sink.text(packing.bytes());
+}
+
+}  // namespace
+
+ModelColour modelColour(std::size_t i) { return kColours[i % std::size(kColours)]; }
+
+std::string textOf(const ModelColour& colour) {
+    return fmt::format("#{:02X}{:02X}{:02X}", colour[0], colour[1], colour[2]);
+}
+
+void writeThreeMf(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title) {
+    const std::vector<std::vector<Triangle>> parts = solidParts(mesh.points, mesh.triangles);
+    const std::string only = escaped(title);
+    const bool wide = needsFloat64(mesh);
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        pieces.push_back({parts.size() == 1 ? only : fmt::format("{} {}", only, i + 1), modelColour(i),
+                          mesh.points, parts[i], wide});
+    pack(sink, ModelText(pieces, title, mesh.space, mesh.metresPerUnit).make(), name);
+}
+
+void writeThreeMfObjects(const std::filesystem::path& path, const std::vector<ModelObject>& objects,
+                         const MeshWriteOptions& options) {
+    std::vector<std::vector<Point>> placed;
+    for (const ModelObject& object : objects) {
+        placed.push_back(object.mesh.points);
+        if (options.space == Space::ras)
+            for (Point& p : placed.back()) p = {0.0 - p[0], 0.0 - p[1], p[2]};  // half a turn, without -0
+    }
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        MeshView view;
+        view.points = placed[i];
+        view.triangles = objects[i].mesh.triangles;
+        pieces.push_back(
+            {escaped(objects[i].name), objects[i].colour, view.points, view.triangles, needsFloat64(view)});
+    }
+    Sink sink(path);
+    pack(sink, ModelText(pieces, path.stem().string(), options.space, options.metresPerUnit).make(),
+         path.string());
+    sink.finish();
 }
 
 }  // namespace isowave

@@ -1,7 +1,11 @@
 // 3MF written: a zip archive with a model in XML (3MF Core Specification 1.3, 3mf.io).
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/mesh/sink.h"
 #include "io/mesh/view.h"
@@ -14,5 +18,23 @@ namespace isowave {
 // Deflated, with fixed times: equal meshes give equal files. name: begins complaints. Throws OperationError where the archive
 // cannot be made. REQUIRES: triangles.
 void writeThreeMf(Sink& sink, const MeshView& mesh, const std::string& name, const std::string& title);
+
+// Red, green and blue, 0 to 255, sRGB.
+using ModelColour = std::array<std::uint8_t, 3>;
+// The eight, by turns.
+ModelColour modelColour(std::size_t i);
+// "#E69F00"
+std::string textOf(const ModelColour& colour);
+
+// Meshes that are an object each, whatever shells they have.
+struct ModelObject {
+    std::string name;
+    ModelColour colour{};
+    TriangleMesh mesh;
+};
+// A file of these objects, in their order, placed and in the unit as writeMesh() does it; appears whole or not at all. Throws
+// OperationError. REQUIRES: an object, and a triangle in each.
+void writeThreeMfObjects(const std::filesystem::path& path, const std::vector<ModelObject>& objects,
+                         const MeshWriteOptions& options);
 
 }  // namespace isowave

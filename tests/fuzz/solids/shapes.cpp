@@ -6,6 +6,7 @@
 #include "isowave/isowave.h"
 #include "isowave/openvdb.h"
 #include "tests/fuzz/bytes.h"
+#include "tests/fuzz/solids/written.h"
 #include "tests/zoo/box.h"
 #include "tests/zoo/mesh_check.h"
 
@@ -67,9 +68,11 @@ void checkLadder(const Solid& solid, Bytes& bytes) {
     const LevelOptions options = levelOptions(bytes);
     const bool falls = options.hold == Holding::local && !options.keepSpecks;
     const Ladder ladder = makeLadder(solid, options);
+    const Writing writing(bytes);
     std::optional<SolidCounts> before;
     for (const Level& level : ladder.levels) {
         requireSound(level.mesh);
+        requireWritten(level.mesh, writing);
         const SolidCounts counts = countsOf(level.report.topology);
         if (falls && before && isMore(counts, *before))
             require(level.report.limitsMissed.has_value(), "a level has more than the one before, unsaid");

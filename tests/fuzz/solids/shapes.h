@@ -11,6 +11,7 @@ namespace isowave::fuzz {
 //   - the pyramid restores every control point of step 0, to 1e-5 K
 //   - every mesh of every step, with and without the hold, is closed, oriented and 2-manifold, by other means than polygonize's
 //     own (tests/zoo/mesh_check.h)
+//   - every level written as VTP, 3MF and GLB is read again as it was (written.h)
 //   - from level to level no parts, handles or cavities are added, unless the report says so (limitsMissed)
 std::vector<Target> shapeTargets();
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "io/image/segments.h"
 #include "isowave/image.h"
 #include "tests/io/image/dicom_writer.h"
 #include "tests/io/image/files.h"
@@ -497,6 +498,10 @@ class DicomSegments : public DicomFrames {
             groups.push_back(group.sequence(0x00209113, {position}).sequence(0x0062000A, {segment}));
             bits[20 * i + static_cast<std::size_t>(pixels[i])] = true;
         }
+        DicomOut liver, lung;
+        liver.us(0x00620004, 3).text(0x00620005, "LO", "liver");
+        lung.us(0x00620004, 7).text(0x00620005, "LO", "left lung");
+        says.more.sequence(0x00620002, {liver, lung});
         says.more.sequence(0x52009230, groups);
         says.pixels.assign((bits.size() + 15) / 16 * 2, '\0');
         for (std::size_t k = 0; k < bits.size(); ++k)
@@ -515,6 +520,15 @@ TEST_F(DicomSegments, BecomeLabels) {
     expected[20 + 8] = expected[40 + 9] = 7;
     EXPECT_EQ(image.values, expected);
     EXPECT_TRUE(image.integral);
+}
+
+TEST_F(DicomSegments, HaveNames) {
+    const auto segments = imageio::segmentsOf(write({3, 7}, {0, 1}, {5, 6}));
+    ASSERT_EQ(segments.size(), 2u);
+    EXPECT_EQ(segments[0].label, 3);
+    EXPECT_EQ(segments[0].name, "liver");
+    EXPECT_EQ(segments[1].label, 7);
+    EXPECT_EQ(segments[1].name, "left lung");
 }
 
 TEST_F(DicomSegments, AreAStackBesideSlices) {

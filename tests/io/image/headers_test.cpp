@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gzip.h"
+#include "io/image/segments.h"
 #include "tests/io/image/files.h"
 #include "tests/io/image/written.h"
 
@@ -312,6 +313,26 @@ const std::string kLayers =
     "(0,0,1)\nspace origin: (0,0,0)\nkinds: list domain domain domain\nSegment0_Name:=liver\n"
     "Segment0_LabelValue:=1\nSegment0_Layer:=0\nSegment1_Name:=left kidney\nSegment1_LabelValue:=5\n"
     "Segment1_Layer:=1\n";
+
+TEST_F(Headers, SegmentsHaveNamesLabelsColoursAndLayers) {
+    const fs::path path =
+        nrrd(kLayers +
+                 "Segment0_Color:=0.5 0 1\nSegment1_Color:=0.5 0 1.5\nSegment2_Name:=\x07 odd\n"
+                 "encoding: raw\n",
+             std::string(8, '\1'));
+    const auto segments = imageio::segmentsOf(path);
+    ASSERT_EQ(segments.size(), 3u);
+    EXPECT_EQ(segments[0].name, "liver");
+    EXPECT_EQ(segments[0].label, 1);
+    EXPECT_EQ(segments[0].colour, (std::array<std::uint8_t, 3>{128, 0, 255}));
+    EXPECT_EQ(segments[1].name, "left kidney");
+    EXPECT_EQ(segments[1].label, 5);
+    EXPECT_EQ(segments[1].layer, 1);
+    EXPECT_FALSE(segments[1].colour);  // beyond 1
+    EXPECT_EQ(segments[2].name.find('\x07'), std::string::npos);
+    EXPECT_TRUE(imageio::segmentsOf(folder / "none.nrrd").empty());
+    EXPECT_TRUE(imageio::segmentsOf(folder).empty());
+}
 
 // Layers lie side by side, a voxel of each.
 TEST_F(Headers, LayersOfASegmentationAreNamedAndChosen) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/mesh/distance/distance_colours.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 
@@ -30,14 +31,18 @@ class GlbLodsFile : public testing::TestWithParam<bool> {
         mesh.normals = {{-0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {-0.6f, 0, 0.8f}, {0, 0, 1}};
         return mesh;
     }
-    void write(const std::vector<TriangleMesh>& levels) {
+    // distances: of each level's points, or none.
+    void write(const std::vector<TriangleMesh>& levels, const std::vector<std::vector<float>>& distances = {},
+               double range = 0) {
         GlbLods lods({Space::lps, 0.001}, GetParam());
         double coverage = 0.5;
         for (const TriangleMesh& mesh : levels) {
-            lods.add("L" + std::to_string(count_++), mesh, coverage);
+            const auto i = static_cast<std::size_t>(count_);
+            lods.add("L" + std::to_string(count_++), mesh, coverage,
+                     distances.empty() ? std::vector<float>() : distances[i]);
             coverage /= 2;
         }
-        lods.write(path_);
+        lods.write(path_, range);
         std::ifstream file(path_, std::ios::binary);
         bytes_.assign(std::istreambuf_iterator<char>(file), {});
         std::uint32_t length = 0;
@@ -69,6 +74,15 @@ class GlbLodsFile : public testing::TestWithParam<bool> {
                    node["translation"][a].get<double>();
         }
         return p;
+    }
+
+    // Where the values of a level's attribute begin.
+    std::size_t startOf(std::size_t level, const char* attribute) const {
+        const auto& attributes = gltf_["meshes"][level]["primitives"][0]["attributes"];
+        const auto& accessor = gltf_["accessors"][attributes[attribute].get<std::size_t>()];
+        EXPECT_EQ(accessor["count"], 5);
+        return gltf_["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"]
+            .get<std::size_t>();
     }
 
     fs::path path_;
@@ -110,6 +124,33 @@ TEST_P(GlbLodsFile, VerticesAndIndicesAreAlignedToFour) {
         if (!view.contains("byteStride")) continue;
         EXPECT_EQ(view["byteStride"].get<int>() % 4, 0);
     }
+}
+
+TEST_P(GlbLodsFile, DistancesOfAllLevelsHaveOneRangeOfColours) {
+    const std::vector<std::vector<float>> distances = {
+        {0, 0, 0, 0, 0}, {0, 0.25F, 1, 0, 0.5F}, {2, 1, 0.5F, 4, 0}};
+    for (const double range : {0.0, 8.0}) {
+        count_ = 0;
+        write({tent(20), tent(22), tent(35)}, distances, range);
+        const double last = range > 0 ? range : 4;  // the largest of all levels
+        for (std::size_t level = 0; level < 3; ++level) {
+            EXPECT_EQ(gltf_["meshes"][level]["extras"]["distance_of_last_colour"], last);
+            const std::size_t at = startOf(level, "_DISTANCE_TO_LEVEL0"), colour = startOf(level, "COLOR_0");
+            for (std::size_t v = 0; v < 5; ++v) {
+                EXPECT_EQ(this->at<float>(at + 4 * v), distances[level][v]);
+                EXPECT_EQ(this->at<StoredColour>(colour + 8 * v),
+                          storedDistanceColour(distances[level][v], last));
+            }
+        }
+        EXPECT_EQ(gltf_["buffers"][0]["byteLength"], binary_.size());
+        EXPECT_NEAR(position(2, 4)[1], 0.035, 1e-6);  // shapes are where they were
+    }
+}
+
+TEST_P(GlbLodsFile, WithoutDistancesThereAreNoColours) {
+    write({tent(20), tent(22)});
+    EXPECT_EQ(bytes_.find("COLOR_0"), std::string::npos);
+    EXPECT_EQ(bytes_.find("distance_of_last_colour"), std::string::npos);
 }
 
 TEST_P(GlbLodsFile, OneLevelNeedsNoExtensionForLevels) {

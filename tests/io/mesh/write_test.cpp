@@ -11,6 +11,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "io/mesh/distance/recolour_glb.h"
 #include "io/mesh/read.h"
 #include "isowave/error.h"
 #include "polygonize/fields.h"
@@ -461,6 +462,29 @@ TEST(MeshWriter, DistancesAreAnAttributeAndColoursOfGlb) {
         EXPECT_EQ(colour[3], 65'535);
     }
     EXPECT_EQ(json["meshes"][0]["extras"]["distance_of_last_colour"], 2);
+}
+
+// A ladder knows the range of its colours when its last mesh is measured.
+TEST(MeshWriter, RecolouredGlbIsTheOneOfThatRange) {
+    const TriangleMesh mesh = ringMesh();
+    MeshWriteOptions options;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        options.distanceToLevel0.push_back(0.01F * static_cast<float>(i));
+    const fs::path folder = freshFolder("recoloured");
+    for (const double range : {123.456789, 3e-7}) {  // one beyond all distances, one that most are beyond
+        writeMesh(folder / "a.glb", mesh, MeshFormat::glb, options);
+        const std::string before = bytesOf(folder / "a.glb");
+        recolourGlb(folder / "a.glb", range);
+        MeshWriteOptions given = options;
+        given.distanceRange = range;
+        const std::string recoloured = bytesOf(folder / "a.glb");
+        writeMesh(folder / "a.glb", mesh, MeshFormat::glb, given);
+        EXPECT_TRUE(recoloured == bytesOf(folder / "a.glb")) << range;  // too long to print
+        EXPECT_FALSE(recoloured == before) << range;
+    }
+    writeMesh(folder / "empty.glb", {}, MeshFormat::glb);
+    recolourGlb(folder / "empty.glb", 1);
+    fs::remove_all(folder);
 }
 
 // ---- float32

@@ -2,7 +2,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <zip.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "io/mesh/read.h"
 #include "io/mesh/xml/solid_parts.h"
@@ -381,6 +385,40 @@ TEST(ThreeMf, HasAnObjectForEachPartWithItsNameAndColour) {
     TriangleMesh one;
     addCube(one, 1, {0, 0, 0});
     EXPECT_THAT(modelOf(writtenThreeMf(one)), HasSubstr("name=\"a&lt;b\" pid"));
+}
+
+// Shells of one object stay one object, and an object's own points are numbered from 0.
+TEST(ThreeMf, ObjectsHaveTheNamesColoursAndMeshesThatTheyAreGiven) {
+    ModelObject two{"liver & \"gall\"", {0xDD, 0x08, 0xFF}, {}}, far{"far", {1, 2, 3}, {}};
+    addCube(two.mesh, 1, {0, 0, 0});
+    addCube(two.mesh, 1, {5, 0, 0});
+    addCube(far.mesh, 1e-3, {1e4, 0, 0});  // needs float64
+    const auto path =
+        std::filesystem::temp_directory_path() / ("isowave_objects_" + std::to_string(::getpid()) + ".3mf");
+    writeThreeMfObjects(path, {two, far}, {Space::ras, 0.01});
+    const std::string archive = [&] {
+        std::ifstream file(path, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    }();
+    const std::string model = modelOf(archive);
+    for (const char* words :
+         {"<model unit=\"centimeter\"", "SPACE=RAS", "<base name=\"far\" displaycolor=\"#010203\"/>",
+          "<base name=\"liver &amp; &quot;gall&quot;\" displaycolor=\"#DD08FF\"/>",
+          "<object id=\"2\" type=\"model\" name=\"liver &amp; &quot;gall&quot;\" pid=\"1\" pindex=\"0\">",
+          "<object id=\"3\" type=\"model\" name=\"far\" pid=\"1\" pindex=\"1\">", "<item objectid=\"3\"/>"})
+        EXPECT_THAT(model, HasSubstr(words));
+    EXPECT_THAT(model, testing::Not(HasSubstr("<object id=\"4\"")));
+    const PolygonSoup soup = readThreeMf(archive, "file");
+    ASSERT_EQ(soup.faceCount(), two.mesh.triangles.size() + far.mesh.triangles.size());
+    const std::size_t first = 3 * two.mesh.triangles.size();
+    for (std::size_t k = 0; k < 3 * far.mesh.triangles.size(); ++k) {
+        const Point& p = far.mesh.points[far.mesh.triangles[k / 3][k % 3]];
+        const Point& found = soup.points[soup.corners[first + k]];  // in mm, half a turn about z
+        EXPECT_NEAR(found[0], -10 * p[0], 1e-10);
+        EXPECT_NEAR(found[1], -10 * p[1], 1e-10);
+        EXPECT_NEAR(found[2], 10 * p[2], 1e-10);
+    }
+    std::filesystem::remove(path);
 }
 
 TEST(ThreeMf, ReadsBackInEveryUnit) {
