@@ -51,11 +51,13 @@ void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, doub
     missLimits(report, edits.why, progress);
 }
 
+std::string nameOf(const LevelReport& report) {
+    return report.level ? fmt::format("level {}", *report.level) : fmt::format("step {}", report.step);
+}
+
 void missLimits(LevelReport& report, const std::string& why, const Progress& progress) {
     report.limitsMissed = why;
-    progress.say(fmt::format(
-        "{}: limits on the topology are missed: {}",
-        report.level ? fmt::format("level {}", *report.level) : fmt::format("step {}", report.step), why));
+    progress.say(fmt::format("{}: limits on the topology are missed: {}", nameOf(report), why));
 }
 
 }  // namespace isowave

@@ -20,6 +20,9 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
 void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                 LevelReport& report, const Progress& progress);
 
+// "level 2"; "step 7" where that is none.
+std::string nameOf(const LevelReport& report);
+
 // Puts into the report, and says, why the level has more than it may.
 void missLimits(LevelReport& report, const std::string& why, const Progress& progress);
 

@@ -511,8 +511,8 @@ void LevelMesher::tellVolume(const LevelReport& report) {
     progress_.say(fmt::format(
         "{}: {:+.2g} % of the volume of {}, more than {:.0f} %; the level before it, or voxels half as "
         "large, would be nearer",
-        report.level ? fmt::format("level {}", *report.level) : fmt::format("step {}", report.step),
-        100 * *report.volumeError, truth_.volume ? "the input" : "level 0", 100 * kVolumeTold));
+        nameOf(report), 100 * *report.volumeError, truth_.volume ? "the input" : "level 0",
+        100 * kVolumeTold));
 }
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {

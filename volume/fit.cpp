@@ -184,22 +184,6 @@ Mask knownOf(const openvdb::FloatGrid& distance, const DistanceFitOptions& optio
     return knownAround(nodesNear(distance.constTree(), static_cast<float>(options.band)));
 }
 
-}  // namespace
-
-BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options, FitReport* report,
-                       const Progress& progress) {
-    progress("fitting", 0);
-    Mask known = knownOf(nodes);
-    const openvdb::Coord shift = moveOrigin(known);
-    BSplineField field = smoothedSigns(nodes, known, shift, options, progress);
-    FitReport result;
-    result.filterPasses = options.passes;
-    finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, report, progress);
-    return field;
-}
-
-namespace {
-
 BSplineField fitted(const openvdb::FloatGrid& distance, openvdb::FloatGrid* givenUp,
                     const DistanceFitOptions& options, FitReport* report, const Progress& progress) {
     progress("fitting", 0);
@@ -213,6 +197,18 @@ BSplineField fitted(const openvdb::FloatGrid& distance, openvdb::FloatGrid* give
 }
 
 }  // namespace
+
+BSplineField fitBinary(const NodeCollection& nodes, const BinaryFitOptions& options, FitReport* report,
+                       const Progress& progress) {
+    progress("fitting", 0);
+    Mask known = knownOf(nodes);
+    const openvdb::Coord shift = moveOrigin(known);
+    BSplineField field = smoothedSigns(nodes, known, shift, options, progress);
+    FitReport result;
+    result.filterPasses = options.passes;
+    finish(field, kBinaryFloor, kBinaryTarget, options.mostRepairPasses, result, report, progress);
+    return field;
+}
 
 BSplineField fitDistance(const openvdb::FloatGrid& distance, const DistanceFitOptions& options,
                          FitReport* report, const Progress& progress) {

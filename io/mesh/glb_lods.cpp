@@ -7,8 +7,8 @@
 
 #include "base/point_box.h"
 #include "io/mesh/distance/distance_colours.h"
+#include "io/mesh/place.h"
 #include "io/mesh/sink.h"
-#include "io/mesh/write.h"
 #include "isowave/error.h"
 
 namespace isowave {

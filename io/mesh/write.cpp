@@ -7,6 +7,7 @@
 #include "io/mesh/lines.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/off.h"
+#include "io/mesh/place.h"
 #include "io/mesh/ply.h"
 #include "io/mesh/stl.h"
 #include "io/mesh/xml/three_mf_writer.h"
@@ -31,30 +32,7 @@ std::string allFormats(std::size_t skip) {
     return all;
 }
 
-// + 0.0 turns -0 into 0, which are one point to a reader.
-template <class Real, class Turn>
-void turnAll(std::vector<std::array<Real, 3>>& vectors, const Turn& turn) {
-    for (auto& v : vectors) {
-        v = turn(v);
-        for (Real& x : v) x += Real{0};
-    }
-}
-
 }  // namespace
-
-void placeFor(MeshFormat format, const MeshWriteOptions& options, TriangleMesh& mesh) {
-    const auto halfTurn = [](const auto& p) { return std::decay_t<decltype(p)>{-p[0], -p[1], p[2]}; };
-    const auto yUp = [](const auto& p) { return std::decay_t<decltype(p)>{p[0], p[2], -p[1]}; };
-    if (options.space == Space::ras) {
-        turnAll(mesh.points, halfTurn);
-        turnAll(mesh.normals, halfTurn);
-    }
-    if (format != MeshFormat::glb) return;
-    turnAll(mesh.points, yUp);
-    turnAll(mesh.normals, yUp);
-    for (Point& p : mesh.points)
-        for (double& x : p) x *= options.metresPerUnit;
-}
 
 MeshFormat meshFormatFromName(const std::string& name) {
     for (const auto& [format, extension] : kNames)

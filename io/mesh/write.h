@@ -17,10 +17,6 @@ struct MeshFormatName {
 };
 std::span<const MeshFormatName> meshFormatNames();
 
-// Points and normals of `mesh` as a file of this format shall have them: turned to RAS where the options ask for it; for GLB Y up,
-// in metres.
-void placeFor(MeshFormat format, const MeshWriteOptions& options, TriangleMesh& mesh);
-
 // The points as they are: for GLB they must already be what glTF asks for. path: for complaints, and GLB's name of the mesh.
 // REQUIRES: triangles, for STL, GLB and 3MF.
 void printMesh(Sink& sink, const MeshView& mesh, MeshFormat format, const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #include "volume/fit/known.h"
 
 #include <openvdb/tools/Morphology.h>
+#include <tbb/parallel_for.h>
 
 #include <vector>
 
@@ -97,16 +98,12 @@ openvdb::math::Transform::Ptr shiftedTransform(const openvdb::math::Transform& t
 }
 
 BSplineField makeField(Shape::Ptr shape, double K, const openvdb::math::Transform& transform) {
-    BSplineField field = fieldOfLeaves(std::move(shape), K, transform, {});
-    const auto k = static_cast<float>(K);
-    const openvdb::BoolTree& signs = field.shape->tree();
-    field.controlPoints->setTree(std::make_shared<openvdb::FloatTree>(signs, k, k, openvdb::TopologyCopy()));
-    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(field.controlPoints->tree());
-    leaves.foreach ([&signs, k](FloatLeaf& leaf, std::size_t) {
-        fillBySign(insideWordsOf(*signs.probeConstLeaf(leaf.origin())), k, leaf.buffer().data());
-    });
-    fillInsideTiles(field.controlPoints->tree(), signs, -1, -k);
-    return field;
+    std::vector<const openvdb::BoolTree::LeafNodeType*> signs;
+    shape->constTree().getNodes(signs);
+    std::vector<FloatLeafPtr> leaves(signs.size());
+    tbb::parallel_for(std::size_t(0), leaves.size(),
+                      [&](std::size_t i) { leaves[i] = makeLeaf(*signs[i], K); });
+    return fieldOfLeaves(std::move(shape), K, transform, std::move(leaves));
 }
 
 BSplineField fieldOfLeaves(Shape::Ptr shape, double K, const openvdb::math::Transform& transform,

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
+#include "io/mesh/place.h"
 #include "io/mesh/tiles/draco_bytes.h"
-#include "io/mesh/write.h"
 #include "isowave/error.h"
 
 namespace isowave {

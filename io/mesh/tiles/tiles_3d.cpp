@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "io/mesh/glb.h"
-#include "io/mesh/write.h"
+#include "io/mesh/place.h"
 #include "isowave/error.h"
 
 namespace isowave {

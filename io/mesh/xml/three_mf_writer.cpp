@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/mesh/float32.h"
+#include "io/mesh/place.h"
 #include "io/mesh/xml/solid_parts.h"
 #include "io/mesh/xml/three_mf_units.h"
 #include "isowave/error.h"
@@ -218,10 +219,6 @@ class Packing {
     zip_t* zip_ = nullptr;
 };
 
-}  // namespace
-
-namespace {
-
 void pack(Sink& sink, const std::string& model, const std::string& name) {
     Packing packing(name);
     packing.add("[Content_Types].xml", kTypes);
@@ -251,16 +248,13 @@ void writeThreeMf(Sink& sink, const MeshView& mesh, const std::string& name, con
 
 void writeThreeMfObjects(const std::filesystem::path& path, const std::vector<ModelObject>& objects,
                          const MeshWriteOptions& options) {
-    std::vector<std::vector<Point>> placed;
-    for (const ModelObject& object : objects) {
-        placed.push_back(object.mesh.points);
-        if (options.space == Space::ras)
-            for (Point& p : placed.back()) p = {0.0 - p[0], 0.0 - p[1], p[2]};  // half a turn, without -0
-    }
+    std::vector<TriangleMesh> placed;
+    for (const ModelObject& object : objects)
+        placeFor(MeshFormat::threeMf, options, placed.emplace_back(TriangleMesh{object.mesh.points, {}, {}}));
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < objects.size(); ++i) {
         MeshView view;
-        view.points = placed[i];
+        view.points = placed[i].points;
         view.triangles = objects[i].mesh.triangles;
         pieces.push_back(
             {escaped(objects[i].name), objects[i].colour, view.points, view.triangles, needsFloat64(view)});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/mesh/float32.h"
+#include "io/mesh/place.h"
 #include "io/mesh/read.h"
 #include "io/mesh/write.h"
 #include "io/mesh/xml/solid_parts.h"
