@@ -263,25 +263,42 @@ class MaskFit {
     double t_ = 1;
 };
 
-}  // namespace
-
-BSplineField fitMask(const NodeCollection& nodes, const MaskFitOptions& options, FitReport* report,
-                     const Progress& progress) {
+// Everything before the repair; a source's lattice point i is i + shiftOf(known) of the field.
+template <class ShiftOf>
+BSplineField smoothestWithin(const NodeCollection& nodes, const MaskFitOptions& options,
+                             const ShiftOf& shiftOf, const Progress& progress) {
     progress("fitting", 0);
     const openvdb::BoolTree& signs = nodes.grid->constTree();
     openvdb::MaskTree known = knownAround(openvdb::MaskTree(signs, false, openvdb::TopologyCopy()));
     MaskFit fit(signs, known);
     fit.run(options.passes, progress);
-    const openvdb::Coord shift = moveOrigin(known);
+    const openvdb::Coord shift = shiftOf(known);
     const auto makeInside = [&signs, &shift] { return Signs(signs, shift); };
     BSplineField field = makeField(makeShape(known, signs, shift, makeInside), options.K,
                                    *shiftedTransform(nodes.grid->transform(), shift));
     fit.putControlPoints(field.controlPoints->tree(), shift, options.K);
+    return field;
+}
+
+constexpr double kMaskTarget = kDistanceTarget / kClamp;
+
+}  // namespace
+
+BSplineField fitMask(const NodeCollection& nodes, const MaskFitOptions& options, FitReport* report,
+                     const Progress& progress) {
+    BSplineField field = smoothestWithin(nodes, options, moveOrigin, progress);
     FitReport result;
     result.gradientPasses = options.passes;
-    finish(field, kDistanceFloor / kClamp, kDistanceTarget / kClamp, options.mostRepairPasses, result, report,
-           progress);
+    finish(field, kMaskFloor, kMaskTarget, options.mostRepairPasses, result, report, progress);
     return field;
+}
+
+BSplineField fitMaskPart(const NodeCollection& nodes, const MaskFitOptions& options,
+                         const openvdb::CoordBBox& box, PartRepair& repair, const Progress& progress) {
+    BSplineField part = smoothestWithin(
+        nodes, options, [](const openvdb::MaskTree&) { return openvdb::Coord(0); }, progress);
+    repair = finishPart(part, kMaskFloor, kMaskTarget, options.mostRepairPasses, box, progress);
+    return part;
 }
 
 }  // namespace isowave
