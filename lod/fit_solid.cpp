@@ -44,6 +44,7 @@ void checkFitOptions(const SolidOptions& options) {
     requirePositive("--half-width", options.halfWidth);
     requirePositive("--band", options.band);
     requirePositive("--max-memory", options.maxMemory);
+    requirePositive("--slab-memory", options.slabMemory);
     const DistanceFitOptions defaults;
     const double halfWidth = options.halfWidth.value_or(defaults.halfWidth),
                  band = options.band.value_or(defaults.band);

@@ -16,6 +16,10 @@ inline constexpr double kBytesPerNode = 320;
 // The share of these that a field and its pyramid take, without levels. Seen: 15 bytes for each point of the band of a gyroid in 512^3
 // voxels, 30 and 33 for TR12J and the bunny at 512, 24 and 60 for two heads; 50 for a mask by the binary fit.
 inline constexpr double kShareOfField = 0.3;
+// Of a slab's fit (lod/slabs), for each lattice point of the leaves of the distances' band, for each node of a binary fit and of one of
+// masks, beside the program. Seen in 4 and 8 slabs of a ball of a gyroid in 512^3 voxels: 6.1 to 6.6, 61 to 70 and 194.
+inline constexpr double kBytesPerSlabPoint = 8, kBytesPerSlabNode = 90, kBytesPerSlabMaskNode = 220,
+                        kBytesOfWorker = 0.13e9;
 // Of an edit, balls of 57 to 287 voxels: for each point near the tool's surface of the lattice that it is sampled on (seen: 14 and 17),
 // for each near it of the lattice of level 0 (seen: 163 to 170, with the pyramid that is made in the end), and for each inside a tool
 // that is added (4.2: a leaf of 512 values until its neighbours are known).

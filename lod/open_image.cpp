@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number_text.h"
 #include "io/image/view.h"
 #include "isowave/error.h"
 #include "lod/fit_solid.h"
@@ -228,15 +229,18 @@ void putVolume(Solid::State& solid, InputReport::Kind kind, double volume) {
 
 // A slab's fit must not depend on what lies far away.
 void checkSlabs(const Fitting& fitting) {
-    if (fitting.method == FitMethod::mask)
-        throw UsageError(
-            "--slabs: the fit of masks and labels works on the whole, each of its 60 passes on what the last "
-            "one made beside it; "
-            "give --fit distance or --fit binary");
     if (fitting.method == FitMethod::distance && fitting.distance.halfWidth > CrossingDistances::kReach)
         throw UsageError(
             fmt::format("--slabs: distances are known {} voxels far; take --half-width {} or less",
                         CrossingDistances::kReach, CrossingDistances::kReach));
+}
+
+double memoryOfSlab(const SolidOptions& options, double limit) {
+    if (!options.slabMemory) return limit;
+    if (*options.slabMemory <= kBytesOfWorker)
+        throw UsageError(fmt::format("a slab may take {} of memory; the program alone takes {}",
+                                     bytesText(*options.slabMemory), bytesText(kBytesOfWorker)));
+    return *options.slabMemory - kBytesOfWorker;
 }
 
 void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, const Fitting& fitting,
@@ -249,20 +253,20 @@ void fitInSlabs(Solid::State& solid, SeenImage seen, const ImageSolid& shape, co
                            SlabCuts::even(2, image.size[2], *options.slabs),
                            image.size[2],
                            image.indexToWorld,
-                           [&](std::int64_t points) {
-                               refuseTooLarge(solid.name(), kBytesPerLeafPoint * static_cast<double>(points),
-                                              limit, "take more --slabs");
-                           }};
+                           memoryOfSlab(options, limit)};
     const auto allowWhole = [name = solid.name(), limit, fieldOnly = options.fieldOnly](std::int64_t points) {
         refuseTooLarge(name, bytesFor(fieldOnly, kBytesPerImageBandPoint * static_cast<double>(points)),
                        limit,
                        "levels need the whole: take a coarser one with isowave mesh --hold none, or crop it");
     };
-    SlabWork work{options.slabFolder, options.slabMap, std::move(seen.mask),
-                  stampOf(solid.name(), options.image), allowWhole};
+    SlabWork work{options.slabFolder,
+                  options.slabMap,
+                  std::move(seen.mask),
+                  solid.name(),
+                  stampOf(solid.name(), options.image),
+                  allowWhole};
     if (work.folder.empty()) work.folder = std::filesystem::temp_directory_path();
-    solid.slabs =
-        std::make_shared<SlabbedField>(std::move(*seen.stream), plan, *options.slabs, work, progress);
+    solid.slabs = std::make_shared<SlabbedField>(std::move(*seen.stream), plan, work, progress);
     if (!solid.slabs->hasSurface()) refuseNoSurface(solid.name(), kNoSurface);
     solid.fit = summaryOf(fitting, solid.slabs->report());
     tellDisagreement(solid.slabs->report(), progress);

@@ -1,6 +1,8 @@
 """One run of isowave.distributed.analyse() with a scheduler and workers of its own, and what its processes took, as JSON:
 
-    by_cluster.py MODULES IMAGE ISO WORKERS SLABS FOLDER OUT.vdb
+    by_cluster.py MODULES IMAGE ISO WORKERS SLABS FOLDER OUT.vdb [MEMORY]
+
+MEMORY: what a worker may take for a slab, "0.3GB".
 """
 import json
 import os
@@ -27,7 +29,7 @@ def peak_of(pid):
     return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) / 1e6
 
 
-def main(modules, image, iso, workers, slabs, folder, out):
+def main(modules, image, iso, workers, slabs, folder, out, memory=None):
     sys.path.insert(0, modules)
     import isowave.distributed
     from distributed import Client, LocalCluster
@@ -37,7 +39,7 @@ def main(modules, image, iso, workers, slabs, folder, out):
             pids = list(client.run(os.getpid).values())
             taken = lambda: [sum(values) for values in zip(*((cpu_of(pid), *io_of(pid)) for pid in pids))]  # noqa: E731
             before, begin, own = taken(), time.time(), cpu_of(os.getpid())
-            isowave.distributed.analyse(image, iso=float(iso), client=client, out=folder, slabs=int(slabs)).save(out)
+            isowave.distributed.analyse(image, iso=float(iso), client=client, out=folder, slabs=int(slabs), memory=memory).save(out)
             wall, after = time.time() - begin, taken()
             cpu, written, read = (a - b for a, b in zip(after, before))
             print(json.dumps(dict(wall=wall, cpu=cpu, own=cpu_of(os.getpid()) - own, written=written, read=read,

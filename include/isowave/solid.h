@@ -108,10 +108,13 @@ struct SolidOptions {
     // maxMemory refuses less.
     bool fieldOnly = false;
 
-    // ---- in slabs: images, fit by distance or binary
-    // So many slabs of slices are read, fitted and halved by themselves and lie in a folder in between; memory is that of a slab. The
-    // result is the same to the bit.
+    // ---- in slabs: images
+    // So many slabs of slices, at least, are read, fitted and halved by themselves and lie in a folder in between; memory is that of a
+    // slab. The result is the same to the bit.
     std::optional<int> slabs = {};
+    // Bytes that a process may take for a slab, with the 130 MB of the program; where a slab would take more, all are made thinner.
+    // Default: maxMemory.
+    std::optional<double> slabMemory = {};
     std::filesystem::path slabFolder =
         {};  // a hidden folder is made in it, and removed; default: the system's for temporary files
     // Runs tasks elsewhere: for each text what runSlabTask() gives, in order, whatever order they are run in. Then slabFolder itself

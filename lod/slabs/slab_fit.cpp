@@ -1,8 +1,11 @@
 #include "lod/slabs/slab_fit.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
-#include "isowave/error.h"
+#include <algorithm>
+#include <cmath>
+
+#include "lod/memory.h"
 #include "volume/distance_image.h"
 #include "volume/fit/known.h"
 #include "volume/linear_transform.h"
@@ -12,8 +15,48 @@ namespace isowave::lod {
 namespace {
 
 int passesOf(const Fitting& fitting) {
-    return fitting.method == FitMethod::distance ? fitting.distance.mostRepairPasses
-                                                 : fitting.binary.mostRepairPasses;
+    switch (fitting.method) {
+        case FitMethod::distance:
+            return fitting.distance.mostRepairPasses;
+        case FitMethod::binary:
+            return fitting.binary.mostRepairPasses;
+        case FitMethod::mask:
+            break;
+    }
+    return fitting.mask.mostRepairPasses;
+}
+
+double floorOf(const Fitting& fitting) {
+    switch (fitting.method) {
+        case FitMethod::distance:
+            return fitting::kDistanceFloor / fitting.distance.halfWidth;
+        case FitMethod::binary:
+            return fitting::kBinaryFloor;
+        case FitMethod::mask:
+            break;
+    }
+    return kMaskFloor;
+}
+
+int reachOf(const Fitting& fitting) { return fitting.method == FitMethod::mask ? kMaskReach : kFitReach; }
+
+constexpr double kSparing = 0.9;  // of the slices that would suffice, should each take as much
+
+struct LacksMemory {
+    double bytes;
+};
+
+// Throws LacksMemory.
+void allow(const SlabFitPlan& plan, const ImageStream& stream, double bytes) {
+    bytes += static_cast<double>(stream.bytesKept());
+    if (plan.memory > 0 && bytes > plan.memory) throw LacksMemory{bytes};
+}
+
+NodeCollection nodesOf(ImageStream& stream, const SlabFitPlan& plan, double bytesPerNode,
+                       const Progress& progress) {
+    NodeCollection nodes = nodesFromImage(stream, plan.solid, progress);
+    allow(plan, stream, bytesPerNode * static_cast<double>(nodes.nodeCount()));
+    return nodes;
 }
 
 BSplineField fitPart(ImageStream& stream, const SlabFitPlan& plan, const LeafBox& box, int passes,
@@ -23,19 +66,25 @@ BSplineField fitPart(ImageStream& stream, const SlabFitPlan& plan, const LeafBox
         case FitMethod::distance: {
             DistanceFitOptions options = plan.fitting.distance;
             options.mostRepairPasses = most;
-            auto distance = distanceFromImage(stream, plan.solid, options.halfWidth, progress, plan.allow);
+            auto distance =
+                distanceFromImage(stream, plan.solid, options.halfWidth, progress, [&](std::int64_t points) {
+                    allow(plan, stream, kBytesPerSlabPoint * static_cast<double>(points));
+                });
             return fitDistancePart(std::move(distance), options, box, repair, progress);
         }
         case FitMethod::binary: {
             BinaryFitOptions options = plan.fitting.binary;
             options.mostRepairPasses = most;
-            return fitBinaryPart(nodesFromImage(stream, plan.solid, progress), options, box, repair,
+            return fitBinaryPart(nodesOf(stream, plan, kBytesPerSlabNode, progress), options, box, repair,
                                  progress);
         }
         case FitMethod::mask:
             break;
     }
-    throw UsageError("--slabs needs a fit that works on parts; give --fit distance or --fit binary");
+    MaskFitOptions options = plan.fitting.mask;
+    options.mostRepairPasses = most;
+    return fitMaskPart(nodesOf(stream, plan, kBytesPerSlabMaskNode, progress), options, box, repair,
+                       progress);
 }
 
 bool knowsOutside(const Shape& shape) {
@@ -49,16 +98,14 @@ struct Slices {
     std::int64_t z0, z1;
 };
 Slices slicesOf(const SlabFitPlan& plan, int slab, int passes) {
-    const std::int64_t reach = kFitReach + passes;
+    const std::int64_t reach = reachOf(plan.fitting) + passes;
     const LeafBox box = plan.cuts.box(slab);
     const std::int64_t low = std::max<std::int64_t>(0, box.min().z() - reach) & ~std::int64_t{7};
     return {low, std::min<std::int64_t>(plan.depth, (box.max().z() + 8 + reach) & ~std::int64_t{7})};
 }
 
-}  // namespace
-
-SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
-                   const Progress& progress) {
+SlabFitted fitted(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                  const Progress& progress) {
     const Slices slices = slicesOf(plan, slab, passes);
     stream.showSlices(slices.z0, slices.z1);
     const openvdb::Coord first(0, 0, static_cast<int>(slices.z0));
@@ -78,6 +125,40 @@ SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPla
     return told;
 }
 
+}  // namespace
+
+SlabFitted fitSlab(const SlabStore& store, ImageStream& stream, const SlabFitPlan& plan, int slab, int passes,
+                   const Progress& progress) {
+    try {
+        return fitted(store, stream, plan, slab, passes, progress);
+    } catch (const LacksMemory& lacking) {
+        SlabFitted told;
+        told.bytesLacking = lacking.bytes;
+        return told;
+    }
+}
+
+std::optional<SlabCuts> thinner(const std::vector<SlabFitted>& slabs, const SlabFitPlan& plan, int passes,
+                                const std::string& image) {
+    double most = 0;
+    for (const SlabFitted& slab : slabs) most = std::max(most, slab.bytesLacking);
+    if (most == 0) return std::nullopt;
+    // In proportion to the slices that are read, as if those of now were of the even thickness.
+    const double beside = 2.0 * (reachOf(plan.fitting) + passes), depth = static_cast<double>(plan.depth);
+    const double read = std::min(depth, depth / plan.cuts.count() + beside);
+    const int count = plan.cuts.count();
+    const double thickness = kSparing * plan.memory / most * read - beside;
+    SlabCuts cuts = SlabCuts::even(
+        2, plan.depth, std::max(count + 1, static_cast<int>(std::ceil(depth / std::max(thickness, 8.0)))));
+    if (cuts.count() == count)
+        refuseTooLarge(
+            image, most, plan.memory,
+            fmt::format("slabs are 8 slices thick as they are, and see {:.0f} beside them; crop or "
+                        "downsample it",
+                        beside));
+    return cuts;
+}
+
 bool needsMorePasses(const SlabFitted& slab, const SlabFitPlan& plan, int passes) {
     const std::vector<std::int64_t>& repaired = slab.repair.repaired;
     return passes < passesOf(plan.fitting) && static_cast<int>(repaired.size()) == passes &&
@@ -89,10 +170,9 @@ std::optional<FitReport> reportOf(const std::vector<SlabFitted>& slabs, const Sl
         if (needsMorePasses(slab, plan, passes)) return std::nullopt;
     FitReport report;
     const Fitting& fitting = plan.fitting;
-    const bool byDistance = fitting.method == FitMethod::distance;
-    if (!byDistance) report.filterPasses = fitting.binary.passes;
-    report.repairFloor =
-        byDistance ? fitting::kDistanceFloor / fitting.distance.halfWidth : fitting::kBinaryFloor;
+    if (fitting.method == FitMethod::binary) report.filterPasses = fitting.binary.passes;
+    if (fitting.method == FitMethod::mask) report.gradientPasses = fitting.mask.passes;
+    report.repairFloor = floorOf(fitting);
     for (const SlabFitted& slab : slabs) {
         report.latticePoints += slab.repair.latticePoints;
         report.disagreeing += slab.repair.disagreeing;

@@ -60,6 +60,7 @@ Json jsonOf(const SlabFitPlan& plan) {
             {"band", fitting.distance.band},
             {"cuts", jsonOf(plan.cuts)},
             {"depth", plan.depth},
+            {"memory", plan.memory},
             {"index_to_world", jsonOf(plan.indexToWorld)}};
 }
 SlabFitPlan planOf(const Json& j) {
@@ -73,6 +74,7 @@ SlabFitPlan planOf(const Json& j) {
     plan.fitting.distance.band = j.at("band").get<double>();
     plan.cuts = cutsOf(j.at("cuts"));
     plan.depth = j.at("depth").get<std::int64_t>();
+    plan.memory = j.at("memory").get<double>();
     plan.indexToWorld = transformOf(j.at("index_to_world"));
     return plan;
 }
@@ -110,6 +112,7 @@ Json jsonOf(const SlabFitted& told) {
             {"known", jsonOf(told.extent.box)},
             {"inside", told.inside},
             {"outside", told.outside},
+            {"bytes_lacking", told.bytesLacking},
             {"K", told.K}};
 }
 SlabFitted fittedOf(const Json& j) {
@@ -121,6 +124,7 @@ SlabFitted fittedOf(const Json& j) {
     told.extent.box = boxOf(j.at("known"));
     j.at("inside").get_to(told.inside);
     j.at("outside").get_to(told.outside);
+    j.at("bytes_lacking").get_to(told.bytesLacking);
     j.at("K").get_to(told.K);
     return told;
 }

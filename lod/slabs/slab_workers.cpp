@@ -5,7 +5,8 @@ namespace isowave::lod {
 std::vector<SlabFitted> SlabsInTurn::fit(const SlabFitPlan& plan, int passes, const Progress& progress) {
     std::vector<SlabFitted> told;
     for (int slab = 0; slab < plan.cuts.count(); ++slab) {
-        if (!told.empty() && needsMorePasses(told.back(), plan, passes)) break;
+        if (!told.empty() && (needsMorePasses(told.back(), plan, passes) || told.back().bytesLacking > 0))
+            break;
         progress("fitting", double(slab) / plan.cuts.count());
         told.push_back(fitSlab(store_, *stream_, plan, slab, passes, progress));
     }
@@ -23,7 +24,8 @@ std::vector<SlabHalved> SlabsInTurn::halve(const SlabHalving& halving, const Pro
 
 std::vector<SlabFitted> SlabsByMap::fit(const SlabFitPlan& plan, int passes, const Progress& progress) {
     progress("fitting", 0);
-    SlabStore(job_.folder).begin(jobText(job_, plan));
+    if (begun_.empty()) begun_ = jobText(job_, plan);
+    SlabStore(job_.folder).begin(begun_);
     std::vector<std::string> tasks;
     for (int slab = 0; slab < plan.cuts.count(); ++slab) tasks.push_back(fitTask(job_, plan, slab, passes));
     return fittedOf(map_(tasks, progress), tasks.size());

@@ -17,7 +17,7 @@ class SlabWorkers {
     virtual ~SlabWorkers() = default;
     // Of the repair, what to try first. Seen: 1 to 4 for smooth images, 5 to 12 for CT, 20 for white noise.
     virtual int firstPasses() const = 0;
-    // All slabs: the parts lie in the store, what is told comes back, in order. May end with the first that needs more passes.
+    // All slabs: the parts lie in the store, what is told comes back, in order. May end with the first that needs more passes or memory.
     virtual std::vector<SlabFitted> fit(const SlabFitPlan& plan, int passes, const Progress& progress) = 0;
     virtual std::vector<SlabHalved> halve(const SlabHalving& halving, const Progress& progress) = 0;
     // The image is not needed any more.
@@ -52,6 +52,7 @@ class SlabsByMap : public SlabWorkers {
   private:
     SlabMap map_;
     SlabJob job_;
+    std::string begun_;  // jobText() of the first plan: others follow from it
 };
 
 }  // namespace isowave::lod

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <numeric>
 
+#include "base/number_text.h"
 #include "isowave/error.h"
 
 namespace isowave::lod {
@@ -48,7 +49,7 @@ SlabFolder::~SlabFolder() {
     fs::remove_all(path_, error);
 }
 
-SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int columns, const SlabWork& work,
+SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, const SlabWork& work,
                            const Progress& progress)
     : plan_(plan),
       hidden_(work.map ? std::optional<SlabFolder>() : std::optional<SlabFolder>(std::in_place, work.folder)),
@@ -61,7 +62,7 @@ SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int colu
         workers_ = std::make_unique<SlabsInTurn>(std::move(stream), store_);
     std::vector<SlabFitted> slabs;
     report_ = withEnoughPasses(workers_->firstPasses(), [&](int passes) {
-        slabs = workers_->fit(plan_, passes, progress);
+        slabs = fitSlabs(passes, work.name, progress);
         return reportOf(slabs, plan_, passes);
     });
     workers_->endFit();
@@ -74,7 +75,21 @@ SlabbedField::SlabbedField(ImageStream stream, const SlabFitPlan& plan, int colu
     origin_ = {plan_.indexToWorld, shiftOf(slabs)};
     transform_ = origin_.transform();
     extent_.box.translate(origin_.shift);
-    grid_ = {moved(plan_.cuts, origin_.shift), moved(SlabCuts::even(1, ySize, columns), origin_.shift)};
+    grid_ = {moved(plan_.cuts, origin_.shift),
+             moved(SlabCuts::even(1, ySize, plan_.cuts.count()), origin_.shift)};
+}
+
+std::vector<SlabFitted> SlabbedField::fitSlabs(int passes, const std::string& image,
+                                               const Progress& progress) {
+    while (true) {
+        std::vector<SlabFitted> slabs = workers_->fit(plan_, passes, progress);
+        std::optional<SlabCuts> cuts = thinner(slabs, plan_, passes, image);
+        if (!cuts) return slabs;
+        progress.say(fmt::format(
+            "{}: {} slabs instead of {}, each of which would take more than {} of memory beside the program",
+            image, cuts->count(), plan_.cuts.count(), bytesText(plan_.memory)));
+        plan_.cuts = std::move(*cuts);
+    }
 }
 
 bool SlabbedField::hasSurface() const { return inside_ > 0 && outside_ && extent_.controlPoints > 0; }

@@ -37,6 +37,7 @@ struct SlabWork {
         folder;  // of in-turn work the folder that a hidden one is made in; else the one that all workers see
     SlabMap map = {};              // none: one slab after the other
     std::vector<float> mask = {};  // values that the stream takes as inside
+    std::string name = {};         // of the image
     std::string image = {};        // whatever changes when the image or the way to read it does
     std::function<void(std::int64_t latticePoints)> allowWhole =
         {};  // throws where step 0 may not be one field
@@ -44,9 +45,8 @@ struct SlabWork {
 
 class SlabbedField {
   public:
-    // Fits all slabs. columns: slabs along y, between phases. Throws as the fit of the whole does.
-    SlabbedField(ImageStream stream, const SlabFitPlan& plan, int columns, const SlabWork& work,
-                 const Progress& progress);
+    // Fits all slabs; as many lie along y between phases. Throws as the fit of the whole does.
+    SlabbedField(ImageStream stream, const SlabFitPlan& plan, const SlabWork& work, const Progress& progress);
 
     const FitReport& report() const { return report_; }
     std::int64_t inside() const { return inside_; }  // lattice points
@@ -72,6 +72,8 @@ class SlabbedField {
                             std::map<std::string, std::string> source, const Progress& progress) const;
 
   private:
+    // All of them, and cuts them thinner where they lack memory.
+    std::vector<SlabFitted> fitSlabs(int passes, const std::string& image, const Progress& progress);
     BSplineField part(int slab) const;
     struct Reached;  // how far slabs came down
     struct Apart {

@@ -154,6 +154,7 @@ def open_in_slabs(
     path: str,
     given: Given,
     slabs: int,
+    memory: Optional[float],
     folder: str,
     run: Callable[[list[str], Callable[[float], bool]], Optional[list[str]]],
     watch: Optional[Watch],

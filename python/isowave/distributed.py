@@ -15,8 +15,10 @@ from __future__ import annotations
 
 import glob
 import json
+import math
 import os
 import shutil
+import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -38,11 +40,16 @@ _LOOK = 0.1  # seconds
 _Made = TypeVar("_Made")
 
 
+_BUSY: dict[str, threading.Lock] = {}  # by worker
+
+
 def _run(path: str, options: Given, task: str) -> str:
-    """On a worker."""
+    """On a worker, one slab at a time by all of its threads, so that the worker's memory is that of a slab."""
     from distributed import get_worker
 
-    return _native.run_slab_task(path, options, task, Watch(None, get_worker().state.nthreads))
+    worker = get_worker()
+    with _BUSY.setdefault(worker.address, threading.Lock()):
+        return _native.run_slab_task(path, options, task, Watch(None, worker.state.nthreads))
 
 
 def _version() -> str:
@@ -52,7 +59,7 @@ def _version() -> str:
 
 
 def _check(client: Any) -> int:
-    """The workers' threads. All workers need this version."""
+    """How many workers there are. All need this version."""
     workers = client.scheduler_info()["workers"]
     if not workers:
         raise OperationError(f"the cluster at {client.scheduler.address} has no workers; start some, and wait for them with "
@@ -61,12 +68,12 @@ def _check(client: Any) -> int:
     for worker, version in client.run(_version).items():
         if version != here:
             raise UsageError(f"worker {worker} has isowave {version}, and this process {here}; install one version everywhere")
-    return sum(worker["nthreads"] for worker in workers.values())
+    return len(workers)
 
 
 class _Cluster(InSlabs):
-    def __init__(self, path: str, slabs: int, folder: Path, client: Any) -> None:
-        super().__init__(path, slabs, str(folder))
+    def __init__(self, path: str, slabs: int, memory: Optional[float], folder: Path, client: Any) -> None:
+        super().__init__(path, slabs, str(folder), memory)
         self._client = client
         self.failure: Optional[BaseException] = None
 
@@ -124,12 +131,30 @@ def _image_of(source: Any, folder: Path, axes: str, spacing: Optional[Sequence[f
     return str(store)
 
 
-def _job(make: Callable[..., _Made], source: Any, client: Any, out: Union[str, PathLike], slabs: Optional[int], axes: str,
-         spacing: Optional[Sequence[float]], origin: Optional[Sequence[float]], arguments: dict[str, Any]) -> _Made:  # fmt: skip
-    threads = _check(client)
+def _bytes(memory: Union[None, float, str], client: Any) -> Optional[float]:
+    """Of a worker's slab: as given, or 80 % of what Dask lets the smallest worker have, above which it pauses it."""
+    from dask.utils import parse_bytes
+
+    if memory is None:
+        limits = [worker["memory_limit"] for worker in client.scheduler_info()["workers"].values() if worker["memory_limit"]]
+        return 0.8 * min(limits) if limits else None
+    try:
+        count = float(parse_bytes(memory))
+    except (AttributeError, OverflowError, TypeError, ValueError):
+        count = 0
+    if not 0 < count < math.inf:
+        raise UsageError(f"memory: {memory!r} is no number of bytes above 0; give a number, or a text such as '2GB'")
+    return count
+
+
+def _job(make: Callable[..., _Made], source: Any, client: Any, out: Union[str, PathLike], slabs: Optional[int],
+         memory: Union[None, float, str], axes: str, spacing: Optional[Sequence[float]], origin: Optional[Sequence[float]],
+         arguments: dict[str, Any]) -> _Made:  # fmt: skip
+    workers = _check(client)
+    limit = _bytes(memory, client)
     folder = Path(out).absolute() / ".slabs"
     folder.mkdir(parents=True, exist_ok=True)
-    cluster = _Cluster(_image_of(source, folder, axes, spacing, origin), slabs or max(4, 2 * threads), folder, client)
+    cluster = _Cluster(_image_of(source, folder, axes, spacing, origin), slabs or max(4, 2 * workers), limit, folder, client)
     try:
         result = make(cluster, **arguments)
     except BaseException:
@@ -142,8 +167,9 @@ def _job(make: Callable[..., _Made], source: Any, client: Any, out: Union[str, P
     return result
 
 
-def lod(source: Any, *, client: Any, out: Union[str, PathLike], slabs: Optional[int] = None, axes: str = "xyz",
-        spacing: Optional[Sequence[float]] = None, origin: Optional[Sequence[float]] = None, **arguments: Any) -> Ladder:  # fmt: skip
+def lod(source: Any, *, client: Any, out: Union[str, PathLike], slabs: Optional[int] = None,
+        memory: Union[None, float, str] = None, axes: str = "xyz", spacing: Optional[Sequence[float]] = None,
+        origin: Optional[Sequence[float]] = None, **arguments: Any) -> Ladder:  # fmt: skip
     """isowave.lod() of an image, by the workers of a Dask cluster.
 
     source: a path that all workers see (whatever isowave.lod reads as an image), a pattern that names the files of one folder
@@ -152,18 +178,22 @@ def lod(source: Any, *, client: Any, out: Union[str, PathLike], slabs: Optional[
     client: a dask.distributed.Client; every worker has this version of isowave.
     out: a folder that all workers see. Slabs lie in out/.slabs until the job is done. After an interruption the same call goes on
         from what is complete.
-    slabs: along z; None: two for each thread of the workers. More slabs take less memory a worker and read more slices twice.
-    arguments: those of isowave.lod(). The fit is by distance or binary: of masks give fit="distance" or fit="binary".
+    slabs: along z; None: two for each worker. More slabs take less memory a worker and read more slices twice.
+    memory: bytes, or a text such as "2GB", that a worker takes at most for a slab, with the program. A worker finds out once it knows
+        the surface in its slab, before it takes them; then all slabs are made thinner. None: 80 % of the workers' own limit in Dask.
+    arguments: those of isowave.lod().
 
-    Raises as isowave.lod(), UsageError for workers of another version, OperationError for a cluster without workers.
+    Raises as isowave.lod(), UsageError for workers of another version, OperationError for a cluster without workers, InputError where
+    slabs of 8 slices would take more than ``memory``.
     """
-    return _job(_lod, source, client, out, slabs, axes, spacing, origin, {**arguments, "keep_field": False})
+    return _job(_lod, source, client, out, slabs, memory, axes, spacing, origin, {**arguments, "keep_field": False})
 
 
-def analyse(source: Any, *, client: Any, out: Union[str, PathLike], slabs: Optional[int] = None, axes: str = "xyz",
-            spacing: Optional[Sequence[float]] = None, origin: Optional[Sequence[float]] = None, **arguments: Any) -> Pyramid:  # fmt: skip
+def analyse(source: Any, *, client: Any, out: Union[str, PathLike], slabs: Optional[int] = None,
+            memory: Union[None, float, str] = None, axes: str = "xyz", spacing: Optional[Sequence[float]] = None,
+            origin: Optional[Sequence[float]] = None, **arguments: Any) -> Pyramid:  # fmt: skip
     """isowave.analyse() of an image, by the workers of a Dask cluster; arguments as lod() of this module has them.
 
     All steps are made by the workers; this process puts the parts together.
     """
-    return _job(_analyse, source, client, out, slabs, axes, spacing, origin, arguments)
+    return _job(_analyse, source, client, out, slabs, memory, axes, spacing, origin, arguments)

@@ -33,15 +33,15 @@ Labels = Union[float, "Sequence[float]"]
 class InSlabs:
     """An image whose slabs others work on; see isowave.distributed."""
 
-    def __init__(self, path: str, slabs: int, folder: str) -> None:
-        self.path, self.slabs, self.folder = path, slabs, folder
+    def __init__(self, path: str, slabs: int, folder: str, memory: Optional[float] = None) -> None:
+        self.path, self.slabs, self.folder, self.memory = path, slabs, folder, memory  # memory: bytes a slab
 
     def run(self, options: Given, tasks: list[str], report: Callable[[float], bool]) -> Optional[list[str]]:
         """What _native.run_slab_task(path, options, ...) gives for each task, in order; None where report(share) was False."""
         raise NotImplementedError
 
     def open(self, options: Given, watch: Watch) -> _native.Solid:
-        return _native.open_in_slabs(self.path, options, self.slabs, self.folder, partial(self.run, options), watch)
+        return _native.open_in_slabs(self.path, options, self.slabs, self.memory, self.folder, partial(self.run, options), watch)
 
 
 def _open_for_field(source: Any, faces: Any, geometry: Geometry, options: Given, watch: Watch, finest: int = 0) -> _native.Solid:

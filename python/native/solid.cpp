@@ -57,11 +57,14 @@ std::shared_ptr<py::object> held(py::object object) {
             }};
 }
 
-// run(tasks, report): what the tasks tell, in order; None where report(share) said False, which asks to stop.
+// memory: bytes a slab, 130 MB of them for the process. run(tasks, report): what the tasks tell, in order; None where report(share)
+// said False, which asks to stop.
 Solid openInSlabs(const std::filesystem::path& path, const GivenOptions& given, int slabs,
-                  const std::filesystem::path& folder, py::object run, const py::object& watch) {
+                  const std::optional<double>& memory, const std::filesystem::path& folder, py::object run,
+                  const py::object& watch) {
     SolidChoices choices(given);
     choices.solid.slabs = slabs;
+    choices.solid.slabMemory = memory;
     choices.solid.slabFolder = folder;
     choices.solid.slabMap = [run = held(std::move(run))](const std::vector<std::string>& tasks,
                                                          const Progress& progress) {

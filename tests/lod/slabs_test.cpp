@@ -44,6 +44,15 @@ std::string bytesOf(const fs::path& path) {
     return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
+std::string refusal(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
 class Slabs : public ::testing::Test {
   protected:
     SolidOptions in(int slabs, SolidOptions options = {.iso = 0}) const {
@@ -61,7 +70,8 @@ class Slabs : public ::testing::Test {
     }
     void expectSame(const Image& image, const SolidOptions& options, const std::vector<int>& counts) const {
         const std::string whole = pyramidOf(image, options);
-        for (const int slabs : counts) EXPECT_EQ(writtenAtOnce(image, in(slabs, options)), whole) << slabs;
+        for (const int slabs : counts)
+            EXPECT_TRUE(writtenAtOnce(image, in(slabs, options)) == whole) << slabs;
         EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1) << "slabs are gone";
     }
     test::TempFolder folder;
@@ -103,6 +113,7 @@ TEST_F(Slabs, GiveItForEveryWayToSayWhatIsInside) {
         imageOf({40, 44, 60}, [](int x, int y, int z) { return (x / 9 + y / 7 + z / 11) % 3; });
     expectSame(mask, {.labels = {1, 2}, .fit = FitMethod::distance}, {3});
     expectSame(mask, {.label = 2, .fit = FitMethod::binary}, {3});
+    expectSame(mask, {.labels = {1, 2}}, {3});
 }
 
 TEST_F(Slabs, GiveItForVoxelsThatAreNoCubesAndForEveryFirstAxis) {
@@ -111,6 +122,38 @@ TEST_F(Slabs, GiveItForVoxelsThatAreNoCubesAndForEveryFirstAxis) {
     expectSame(flat, {.iso = 0}, {3});
     flat.indexToWorld.axis[2][2] = 0.25;
     expectSame(flat, {.iso = 0}, {3});  // z alone is halved first
+}
+
+// A slab of 150 slices does not see the whole, and what it sees ends in faces that the whole does not have.
+TEST_F(Slabs, OfMasksSeeAsFarAsTheirFitReaches) {
+    std::mt19937 random(7);
+    const Image mask = imageOf({14, 12, 900}, [&](int x, int y, int z) {
+        return random() % 16 == 0 || std::hypot(x - 6.5, y - 5.5) < 4 + std::sin(0.11 * z);
+    });
+    expectSame(mask, {}, {6, 30});
+    EXPECT_EQ(open(mask, in(6, {})).fit()->gradientPasses, 60);
+}
+
+TEST_F(Slabs, AreMadeThinnerWhereOneWouldTakeMoreMemoryThanItMay) {
+    const Image rod = imageOf({40, 40, 400}, [](int x, int y, int) {
+        return std::lround(20 * std::clamp(15 - std::hypot(x - 19.3, y - 20.2), -4.0, 4.0));
+    });
+    SolidOptions options = in(2);
+    const auto saidOf = [&](double bytes) {
+        std::string said;
+        options.slabMemory = bytes;
+        Progress progress;
+        progress.remark = [&](std::string_view line) { said += line; };
+        open(rod, options, progress);
+        return said;
+    };
+    EXPECT_THAT(saidOf(1e9), Not(HasSubstr("instead of")));
+    EXPECT_THAT(saidOf(132e6),
+                HasSubstr("slabs instead of 2, each of which would take more than 2 MB of memory"));
+    expectSame(rod, {.iso = 0, .slabMemory = 132e6}, {2});
+    EXPECT_THAT(refusal([&] { saidOf(130.1e6); }),
+                HasSubstr("slabs are 8 slices thick as they are, and see"));
+    EXPECT_THAT(refusal([&] { saidOf(1e8); }), HasSubstr("the program alone takes 130 MB"));
 }
 
 TEST_F(Slabs, AreFittedAgainWhereTheRepairReachesFartherThanTheySaw) {
@@ -226,18 +269,7 @@ TEST_F(Slabs, OfAnotherJobAreNotTakenForOnesOwn) {
     EXPECT_EQ(bytesOf(folder / "again.vdb"), bytesOf(folder / "whole.vdb"));
 }
 
-std::string refusal(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-    return "";
-}
-
-TEST_F(Slabs, AreRefusedForFitsThatNeedTheWhole) {
-    const Image mask = imageOf({20, 20, 20}, [](int x, int y, int z) { return x + y + z > 25 && x > 3; });
-    EXPECT_THAT(refusal([&] { open(mask, in(2, {})); }), HasSubstr("give --fit distance or --fit binary"));
+TEST_F(Slabs, AreRefusedForDistancesThatNeedTheWhole) {
     EXPECT_THAT(refusal([&] { open(largeGyroid(), in(2, {.iso = 0, .halfWidth = 6})); }),
                 HasSubstr("take --half-width 4 or less"));
     EXPECT_THAT(refusal([&] { open(ringMesh(), in(2, {})); }), HasSubstr("--slabs has no meaning for mesh"));

@@ -145,6 +145,39 @@ def test_a_job_that_was_stopped_goes_on_from_what_is_complete(image, whole, clie
     assert kept == told
 
 
+def test_slabs_are_made_thinner_until_a_worker_has_the_memory(client, tmp_path, monkeypatch):
+    x, y, z = np.meshgrid(*(np.arange(n, dtype=np.float32) for n in (40, 40, 400)), indexing="ij")
+    rod = np.round(20 * np.clip(15 - np.hypot(x - 19.3, y - 20.2), -4, 4) + 0 * z).astype(np.int16)
+    array = dask.array.from_array(rod, chunks=(40, 40, 100))
+    asked = []
+    gathered = isowave.distributed._Cluster._gathered
+    monkeypatch.setattr(isowave.distributed._Cluster, "_gathered",
+                        lambda self, options, tasks, report: asked.append(len(tasks)) or gathered(self, options, tasks, report))  # fmt: skip
+    job = dict(iso=0, client=client, slabs=2)
+    whole = saved(isowave.distributed.analyse(array, out=tmp_path / "out", memory="1GB", **job), tmp_path)
+    assert asked[0] == 2 and len(set(asked)) <= 2
+    asked.clear()
+    assert saved(isowave.distributed.analyse(array, out=tmp_path / "out", memory=133e6, **job), tmp_path) == whole
+    assert asked[0] == 2 and asked[1] > 2
+    with pytest.raises(isowave.InputError, match="slabs are 8 slices thick as they are"):
+        isowave.distributed.analyse(array, out=tmp_path / "out", memory=130.1e6, **job)
+    with pytest.raises(isowave.UsageError, match="the program alone takes 130 MB"):
+        isowave.distributed.analyse(array, out=tmp_path / "out", memory="1MB", **job)
+    for wrong in ("much", 0, -1, float("nan"), [1]):
+        with pytest.raises(isowave.UsageError, match="is no number of bytes above 0"):
+            isowave.distributed.analyse(array, out=tmp_path / "out", memory=wrong, **job)
+
+
+def test_masks_are_those_of_one_process(client, tmp_path):
+    x, y, z = np.meshgrid(*(np.arange(n) for n in (20, 24, 90)), indexing="ij")
+    mask = (np.hypot(x - 9.4, y - 12) < 6 + np.sin(0.2 * z)).astype(np.uint8)
+    path = tmp_path / "mask.npy"
+    np.save(path, mask)
+    ladder = isowave.distributed.lod(path, levels=(0, 1), client=client, out=tmp_path / "out", slabs=3)
+    for ours, theirs in zip(ladder, isowave.lod(str(path), levels=(0, 1))):
+        assert (ours.points == theirs.points).all() and ours.report["parts"] == theirs.report["parts"]
+
+
 def test_what_cannot_work_is_said(image, client, tmp_path):
     job = dict(client=client, out=tmp_path / "out", slabs=2)
     with pytest.raises(isowave.InputError, match="no such file"):

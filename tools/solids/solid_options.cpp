@@ -175,8 +175,8 @@ void declareMaxMemory(OptionList& options, SolidOptions& solid) {
 
 void declareSlabs(OptionList& options, SolidOptions& solid) {
     options.value("--slabs", "N", "1",
-                  "images, fit by distance or binary: read, fit and halve N slabs of slices one after the "
-                  "other, which takes less memory; the result is the same",
+                  "images: read, fit and halve N slabs of slices one after the other, more where one would "
+                  "take more than --max-memory; the result is the same",
                   [&](const std::string& v) { solid.slabs = static_cast<int>(integer(v, 1, 4096)); });
 }
 
