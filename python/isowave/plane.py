@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Optional, Union, overload
 
 import numpy as np
@@ -127,17 +127,59 @@ def _ring(values: Any, number: int) -> npt.NDArray[np.float64]:
     return np.ascontiguousarray(array[: len(array) - closed, :2], dtype=np.float64)
 
 
-def _polygons(source: Any) -> Rings:
-    shape = getattr(source, "__geo_interface__", None)
+_PARTS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
+
+
+def _geometries(shape: Any) -> Iterator[Any]:
+    """The geometries of a GeoJSON object, one by one; a feature may have none."""
+    kind = shape.get("type") if isinstance(shape, Mapping) else None
+    try:
+        if kind in _PARTS:
+            for part in shape[_PARTS[kind]]:
+                yield from _geometries(part)
+        elif kind == "Feature":
+            if shape["geometry"] is not None:
+                yield from _geometries(shape["geometry"])
+        elif kind is None:
+            raise InputError('polygons: an object without a "type"; expected GeoJSON')
+        else:
+            yield shape
+    except KeyError as key:
+        raise InputError(f"polygons: a {kind} without {key}; expected GeoJSON") from None
+
+
+def _of_geojson(shape: Any, remark: Callable[[str], None]) -> list[Any]:
+    polygons: list[Any] = []
+    others = []
+    for geometry in _geometries(shape):
+        if geometry["type"] not in ("Polygon", "MultiPolygon"):
+            others.append(geometry["type"])
+        elif "coordinates" not in geometry:
+            raise InputError(f"polygons: a {geometry['type']} without 'coordinates'; expected GeoJSON")
+        else:
+            polygons += [geometry["coordinates"]] if geometry["type"] == "Polygon" else geometry["coordinates"]
+    if not polygons:
+        found = f"is a {others[0]}" if others else "holds no geometry"
+        raise InputError(f"polygons: {found}; expected Polygon or MultiPolygon")
+    if others:
+        remark(f"{len(others)} geometries that are no polygons left out (first: {others[0]})")
+    return polygons
+
+
+def _polygons(source: Any, remark: Callable[[str], None]) -> Rings:
+    shape = getattr(source, "__geo_interface__", source if isinstance(source, Mapping) else None)
     if shape is not None:
-        if shape["type"] not in ("Polygon", "MultiPolygon"):
-            raise InputError(f"polygons: is a {shape['type']}; expected Polygon or MultiPolygon")
-        source = [shape["coordinates"]] if shape["type"] == "Polygon" else shape["coordinates"]
+        source = _of_geojson(shape, remark)
     if not isinstance(source, (list, tuple)):
         raise UsageError(
             f"{type(source).__name__} holds no curves; expected a path, a picture (rows, columns), or a list of polygons, "
             "each a list of rings (N, 2)"
         )
+    for number, polygon in enumerate(source):
+        if isinstance(polygon, np.ndarray) and polygon.ndim == 2:
+            raise InputError(
+                f"polygons: polygon {number} is one ring of the shape {polygon.shape}; expected a list of rings, the outline first: [ring]"
+            )
     return [[_ring(ring, number) for number, ring in enumerate(polygon)] for polygon in source]
 
 
@@ -165,7 +207,7 @@ def curves(
     """A bitmap or polygons -> closed curves, one set a level. Arguments are the options of ``isowave curves``.
 
     source: a path (PNG, TIFF, GeoJSON, a pyramid .iwc, ...), a picture (rows, columns) of any numbers, a list of polygons, each a list of
-    rings (N, 2), or an object with ``__geo_interface__`` (shapely).
+    rings (N, 2), GeoJSON as a dict, or an object with ``__geo_interface__`` (shapely, geopandas).
 
     add, cut: files of polygons that are united with what was fitted, or taken away; all are added before any is cut.
     pyramid: a file (.iwc) that gets what was fitted, to be given as source again.
@@ -191,5 +233,5 @@ def curves(
             raise InputError(f"picture: has {picture.ndim} dimensions; expected 2, (rows, columns)")
         native = _native.curves_of_picture(picture.astype(np.float32), options, watch)
     else:
-        native = _native.curves_of_polygons(_polygons(source), options, watch)
+        native = _native.curves_of_polygons(_polygons(source, watch.remark), options, watch)
     return CurveLadder(native, watch.remarks)

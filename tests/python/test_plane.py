@@ -53,6 +53,40 @@ def test_polygons_in_memory_are_those_of_a_file(tmp_path):
     assert [level.report for level in isowave.curves(Shape(), pixels=128)] == [level.report for level in of_file]
 
 
+def test_geojson_in_memory_is_that_of_a_file(tmp_path):
+    polygons = json.loads(AFRICA.read_text())["geometry"]["coordinates"]
+    one, rest = {"type": "Polygon", "coordinates": polygons[0]}, {"type": "MultiPolygon", "coordinates": polygons[1:]}
+    collection = {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "GeometryCollection", "geometries": [one]}},
+        {"type": "Feature", "properties": {}, "geometry": None},
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+        {"type": "Feature", "properties": {}, "geometry": rest}]}  # fmt: skip
+    (tmp_path / "a.geojson").write_text(json.dumps(collection))
+
+    class Frame:  # as geopandas has it
+        __geo_interface__ = collection
+
+    of_file = isowave.curves(tmp_path / "a.geojson", pixels=128)
+    assert "1 geometries that are no polygons left out (first: Point)" in of_file.remarks
+    for source in (collection, Frame()):
+        ladder = isowave.curves(source, pixels=128)
+        assert [level.report for level in ladder] == [level.report for level in of_file]
+        assert ladder.remarks == [remark.replace(f"{tmp_path / 'a.geojson'}: ", "") for remark in of_file.remarks]
+
+
+@pytest.mark.parametrize("source, says", [
+    ({"type": "FeatureCollection", "features": []}, "holds no geometry; expected Polygon"),
+    ({"type": "Feature", "geometry": {"type": "Point", "coordinates": [0, 0]}}, "is a Point; expected Polygon"),
+    ({"type": "Feature"}, "a Feature without 'geometry'; expected GeoJSON"),
+    ({"type": "Polygon"}, "a Polygon without 'coordinates'; expected GeoJSON"),
+    ({"features": []}, 'an object without a "type"; expected GeoJSON'),
+    ([np.zeros((3, 2))], r"polygon 0 is one ring of the shape \(3, 2\); expected a list of rings"),
+])  # fmt: skip
+def test_what_is_no_polygon_is_told(source, says):
+    with pytest.raises(isowave.InputError, match=says):
+        isowave.curves(source)
+
+
 def test_other_texts_and_the_sheet(tmp_path):
     ladder = isowave.curves(KEYRING, levels=(0, 2))
     assert [level.level for level in ladder] == [0, 1, 2]
