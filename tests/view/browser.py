@@ -49,7 +49,7 @@ def until(true, what, seconds=60):
 
 
 def data(driver):
-    """What the page says of itself: level, triangles, mode, drawn, ready, first."""
+    """What the page says of itself: level, triangles, mode, drawn, ready."""
     return driver.execute_script("return Object.assign({}, document.documentElement.dataset)")
 
 

@@ -6,6 +6,8 @@
 Every function `claim_...` gets the open page of a ladder and its report, and is a test of its own.
 """
 import base64
+import importlib.machinery
+import importlib.util
 import io
 import json
 import pathlib
@@ -19,6 +21,18 @@ from browser import data, press
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKIPPED = 77
+
+
+def program(path):
+    """A Python program without an extension, as a module."""
+    loader = importlib.machinery.SourceFileLoader(path.name, str(path))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(path.name, loader))
+    loader.exec_module(module)
+    return module
+
+
+sys.dont_write_bytecode = True  # none beside the program
+first_picture = program(ROOT / "bench/first_picture")
 
 
 # ---- pictures ---------------------------------------------------------------------------------------------------
@@ -80,6 +94,8 @@ def touch(driver, kind, *points):
 def claim_the_first_picture_is_not_blank(driver, report):
     check(not is_blank(picture(driver)), "the picture is blank")
     check(data(driver)["level"] == "L0")
+    first, chosen = marks(driver)
+    check(0 < first <= chosen, first, chosen)
 
 
 def claim_the_slider_changes_triangles_and_picture(driver, report):
@@ -247,6 +263,23 @@ def a_mesh_alone_is_drawn(driver, folder):
     check(script(driver, "return document.getElementById('levels-a').hidden"), "a slider over one level")
 
 
+def a_large_mesh_is_seen_as_a_draft_before_it_is_whole(driver, folder):
+    first_picture.torus(folder / "torus.ply", 500_000)
+    show(driver, folder, "torus.ply")
+    check(not is_blank(picture(driver)), "the picture is blank")
+    check(script(driver, "const s = stage.loaded.get(0); return s.draft !== null && s.surface !== null"), "no draft was made")
+    first, whole = marks(driver)
+    check(0 < first < whole, first, whole)
+
+
+def marks(driver):
+    """When the first picture was there, and the first of the chosen level."""
+    found = [script(driver, "return performance.getEntriesByName(arguments[0]).map((e) => e.startTime)", name)
+             for name in first_picture.MARKS]
+    check([len(times) for times in found] == [1, 1], found)
+    return [times[0] for times in found]
+
+
 # ---- running ----------------------------------------------------------------------------------------------------
 
 def run(*arguments):
@@ -291,7 +324,8 @@ def main():
             for claim, act in list(globals().items()):
                 if claim.startswith("claim_"):
                     attempt(claim[6:].replace("_", " "), lambda: act(driver, report), driver, failures)
-            for act in (curves_are_drawn, subdivision_levels_are_drawn, a_mesh_alone_is_drawn):
+            for act in (curves_are_drawn, subdivision_levels_are_drawn, a_mesh_alone_is_drawn,
+                        a_large_mesh_is_seen_as_a_draft_before_it_is_whole):
                 attempt(act.__name__.replace("_", " "), lambda: act(driver, folder), driver, failures)
     finally:
         driver.quit()

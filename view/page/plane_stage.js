@@ -30,6 +30,7 @@ class PlaneStage {
         this.loaded.set(index, shown);
         return shown;
     }
+    waitForPicture() {}  // this canvas draws at once
     eachRing(shown, visit) {
         for (let r = 0; r + 1 < shown.begin.length; ++r) visit(shown.begin[r], shown.begin[r + 1]);
     }

@@ -3,6 +3,8 @@
 const SLOW_FRAME = 60;        // ms; meshes that take longer are drawn as drafts while a hand moves them
 const DRAFT_TRIANGLES = 4e5;  // smaller ones are never worth a draft
 
+const isLarge = (level) => level.triangles > DRAFT_TRIANGLES;
+
 class SolidStage {
     constructor(canvas, levels) {
         this.levels = levels;
@@ -17,6 +19,7 @@ class SolidStage {
         this.roles = { a: this.materials(colours), b: this.materials(colours) };
         this.roles.b.surface.transparent = true;
         this.loaded = new Map();
+        this.unpacked = new Map();  // levels on their way to `loaded`: drawn as drafts, since normals take as long as all before
         this.boxOfLevels();
     }
     materials(colours) {
@@ -34,6 +37,14 @@ class SolidStage {
 
     async load(index) {
         if (this.loaded.has(index)) return this.loaded.get(index);
+        const shown = await this.unpack(index);
+        shown.surface = this.surface(shown.mesh);
+        this.loaded.set(index, shown);
+        this.unpacked.delete(index);
+        return shown;
+    }
+    async unpack(index) {
+        if (this.unpacked.has(index)) return this.unpacked.get(index);
         const level = this.levels[index];
         const { lattice, triangles } = unpackedMesh(await inflated(`mesh${index}`), level.vertices, level.triangles);
         const positions = new Float32Array(lattice.length);
@@ -41,8 +52,8 @@ class SolidStage {
             positions[i] = level.low[i % 3] - this.centre[i % 3] + level.step * lattice[i];
         const distances = level.distance ? unpackedValues(await inflated(`distance${index}`)) : new Uint16Array(level.vertices);
         const mesh = { positions, triangles, distances };
-        const shown = { mesh, lattice, surface: this.surface(mesh), wire: null, draft: null, milliseconds: null, again: false };
-        this.loaded.set(index, shown);
+        const shown = { mesh, lattice, surface: null, wire: null, draft: null, milliseconds: null, again: false };
+        this.unpacked.set(index, shown);
         return shown;
     }
     surface(mesh) {
@@ -148,9 +159,9 @@ class SolidStage {
         if (timed.length > 0) this.measure(start, timed);
     }
     show(index, role, state, moving, timed) {
-        const shown = this.loaded.get(index);
-        if (!shown) return;
-        const slow = moving && shown.milliseconds > SLOW_FRAME && shown.mesh.triangles.length / 3 > DRAFT_TRIANGLES;
+        const shown = this.loaded.get(index) || this.unpacked.get(index);
+        if (!shown || (!shown.surface && !isLarge(this.levels[index]))) return;
+        const slow = !shown.surface || (moving && shown.milliseconds > SLOW_FRAME && isLarge(this.levels[index]));
         const surface = slow ? this.draftOf(shown) : shown.surface, level = this.levels[index];
         if (!slow && (shown.milliseconds === null || shown.again)) timed.push(shown);
         surface.material = this.roles[role].surface;
@@ -169,9 +180,12 @@ class SolidStage {
         wire.visible = true;
     }
     // A pixel that is read back waits for the picture.
-    measure(start, timed) {
+    waitForPicture() {
         const gl = this.renderer.getContext();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    }
+    measure(start, timed) {
+        this.waitForPicture();
         const took = performance.now() - start;
         for (const shown of timed) {
             // The first one has the transfer of the buffers in it: where it is neither short nor hopeless, once more.
