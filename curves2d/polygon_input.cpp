@@ -52,6 +52,7 @@ class Collector {
         polygon_.rings.push_back(std::move(ring));
     }
     void other(const std::string& type) { count(others_, type); }
+    void aroundPole(const std::string& place) { count(polar_, place); }
 
     PolygonInput finish() {
         if (result_.polygons.empty())
@@ -61,6 +62,7 @@ class Collector {
                                  : "no polygon in it; expected Polygon or MultiPolygon, or lines 'x y'");
         say(unclosed_, "not closed, closed");
         say(tooShort_, "with fewer than three different points, left out");
+        say(polar_, "around a pole, completed along the border of the map");
         say(crossing_, "meeting themselves; inside is what an odd number of turns surrounds");
         if (others_.number)
             result_.remarks.push_back(fmt::format("{} geometries that are no polygons left out (first: {})",
@@ -87,7 +89,7 @@ class Collector {
     std::string name_;
     Polygon polygon_;
     PolygonInput result_;
-    Count unclosed_, tooShort_, crossing_, others_;
+    Count unclosed_, tooShort_, polar_, crossing_, others_;
 };
 
 // ---- JSON
@@ -117,20 +119,46 @@ void refuseFault(const GeoGeometry& geometry, std::size_t polygon, const std::st
 
 // Degrees of longitude, as GeoJSON has them: an edge between two points near the 180th meridian, on either side of it, is one
 // across it. As it stands it would run around the world.
-void refuseAntimeridian(const Ring& ring, const std::string& place, const std::string& name) {
+std::vector<std::size_t> edgesAcrossAntimeridian(const Ring& ring) {
     constexpr double kNear = 150;
     const auto isDegrees = [](Point p) { return std::abs(p.x) <= 180 && std::abs(p.y) <= 90; };
     const auto isAcross = [](Point a, Point b) {
         const bool isCut = std::abs(a.x) == 180 && std::abs(b.x) == 180;
         return !isCut && a.x * b.x < 0 && std::min(std::abs(a.x), std::abs(b.x)) > kNear;
     };
-    if (!std::all_of(ring.begin(), ring.end(), isDegrees)) return;
-    for (std::size_t i = 0; i + 1 < ring.size(); ++i)
-        if (isAcross(ring[i], ring[i + 1]))
-            throw InputError(
-                name, fmt::format("{}: crosses the antimeridian between points {} ({}, {}) and {} ({}, {}); "
-                                  "RFC 7946, 3.1.9 wants it cut there: ogr2ogr -wrapdateline does so",
-                                  place, i, ring[i].x, ring[i].y, i + 1, ring[i + 1].x, ring[i + 1].y));
+    std::vector<std::size_t> found;
+    if (!std::all_of(ring.begin(), ring.end(), isDegrees)) return found;
+    for (std::size_t i = 0; i < ring.size(); ++i)
+        if (isAcross(ring[i], ring[(i + 1) % ring.size()])) found.push_back(i);
+    return found;
+}
+
+// A ring whose only edge across is edge i goes round a pole, as Antarctica does in many maps of the world. On the plane it
+// is completed along the border of the map: to the pole on the side of the edge's start, and back on the other side.
+void completeAroundPole(Ring& ring, std::size_t i) {
+    const Point a = ring[i], b = ring[(i + 1) % ring.size()];
+    const double side = std::copysign(180, a.x), pole = std::copysign(90, a.y);
+    const double before = 180 - std::abs(a.x), after = 180 - std::abs(b.x);
+    const double y = std::lerp(a.y, b.y, before / (before + after));
+    const Point border[] = {{side, y}, {side, pole}, {-side, pole}, {-side, y}};
+    ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(i + 1), std::begin(border), std::end(border));
+}
+
+// Returns whether the ring was completed around a pole. Throws InputError for any other that runs across.
+bool mendAntimeridian(Ring& ring, const std::string& place, const std::string& name) {
+    constexpr double kPolar =
+        60;  // nearer to the equator an edge across is more likely one of a shape that is not cut
+    const std::vector<std::size_t> across = edgesAcrossAntimeridian(ring);
+    if (across.empty()) return false;
+    const std::size_t i = across[0], next = (i + 1) % ring.size();
+    const Point a = ring[i], b = ring[next];
+    if (across.size() > 1 || a.y * b.y < 0 || std::min(std::abs(a.y), std::abs(b.y)) < kPolar)
+        throw InputError(
+            name, fmt::format("{}: crosses the antimeridian between points {} ({}, {}) and {} ({}, {}); "
+                              "RFC 7946, 3.1.9 wants it cut there: ogr2ogr -wrapdateline does so",
+                              place, i, a.x, a.y, next, b.x, b.y));
+    completeAroundPole(ring, i);
+    return true;
 }
 
 void readJson(const GeoJson& file, Collector& out) {
@@ -151,7 +179,7 @@ void readJson(const GeoJson& file, Collector& out) {
             const std::string place = fmt::format("polygon {}, ring {}", polygon, r);
             if (line.fault) refuseFault(*line.fault, place, out.name());
             Ring ring = ringOf(line.points);
-            refuseAntimeridian(ring, place, out.name());
+            if (mendAntimeridian(ring, place, out.name())) out.aroundPole(place);
             out.ring(std::move(ring), place, true);
         }
         out.endPolygon();

@@ -24,8 +24,9 @@ struct PolygonInput {
 // rings of a text file are one polygon.
 //
 // Repaired, with a remark: a ring that is not closed (it is closed), equal neighbours (one is dropped), rings
-// of fewer than three different points (left out), rings that cross themselves (the first place is named;
-// inside is what an odd number of windings surrounds). Throws InputError: nothing to read, broken JSON, a
+// of fewer than three different points (left out), rings that cross the antimeridian once, so that they go round a
+// pole (completed along the border of the map), rings that cross themselves (the first place is named; inside is
+// what an odd number of windings surrounds). Throws InputError: nothing to read, broken JSON, a
 // coordinate that is no finite number or beyond 1e9, no ring left. Names the ring.
 PolygonInput readPolygons(const std::filesystem::path& path);
 

@@ -351,6 +351,26 @@ TEST_F(Polygons, AcrossTheAntimeridianAreCutOrRefused) {
     EXPECT_EQ(readPolygons(file("polar.geojson", polar)).ringCount(), 1u);
 }
 
+// Antarctica as maps of the world hold it: one edge leads over the antimeridian, and the pole itself is no point.
+TEST_F(Polygons, ARingAroundAPoleIsCompletedAlongTheBorderOfTheMap) {
+    const auto polygon = [&](const std::string& ring) {
+        return file("polar.geojson", R"({"type":"Polygon","coordinates":[)" + ring + "]}");
+    };
+    const PolygonInput south = readPolygons(polygon("[[179,-80],[-179,-84],[0,-70],[179,-80]]"));
+    ASSERT_EQ(south.ringCount(), 1u);
+    EXPECT_EQ(south.polygons[0].rings[0],
+              (Ring{{179, -80}, {180, -82}, {180, -90}, {-180, -90}, {-180, -82}, {-179, -84}, {0, -70}}));
+    ASSERT_EQ(south.remarks.size(), 1u);
+    EXPECT_EQ(south.remarks[0],
+              "1 ring around a pole, completed along the border of the map (first: polygon 0, ring 0)");
+    EXPECT_EQ(readPolygons(polygon("[[-180,84],[179,85],[0,70],[-180,84]]")).polygons[0].rings[0],
+              (Ring{{-180, 84}, {-180, 90}, {180, 90}, {180, 84}, {179, 85}, {0, 70}}));
+    // Neither a shape of which one crossing is the edge that closes it, nor one far from the pole.
+    for (const char* ring : {"[[-179,70],[-179,75],[178,75],[178,70]]", "[[-170,0],[170,0],[0,80],[-170,0]]"})
+        EXPECT_THAT(errorOf([&] { readPolygons(polygon(ring)); }), HasSubstr("crosses the antimeridian"))
+            << ring;
+}
+
 TEST_F(Polygons, EveryPrefixAndManyFlippedBytesAreReadOrRefusedInOneLine) {
     const std::string good =
         R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"a"},"geometry":)"
