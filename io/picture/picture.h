@@ -29,6 +29,8 @@ struct Picture {
     int pages = 1;        // of the file; the first one is here
     bool isSrgb = false;  // its file says that the values are meant for a screen
     std::optional<std::array<double, 2>> pixelSize = {};  // mm
+    std::optional<double> noData =
+        {};  // the sample that its file says stands for none, as GeoTIFF has it; numbers only
     // Row by row from the top, the channels of a pixel together, in this machine's byte order.
     std::vector<std::byte> samples = {};
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/text.h"
 #include "isowave/error.h"
 
 namespace isowave {
@@ -172,6 +173,8 @@ class TiffFile::Reader {
         allocate(picture, name_, bitsEach(picture), file_.size, isHalf_ ? 2 * expansion() : expansion());
         readBlocks(picture);
         finish(picture);
+        if (photometric_ == PHOTOMETRIC_MINISBLACK && picture.bits >= 8)
+            picture.noData = noData(picture.type);
         return picture;
     }
 
@@ -196,6 +199,23 @@ class TiffFile::Reader {
     T tag(std::uint32_t which, T value = {}) const {
         TIFFGetFieldDefaulted(tiff_.get(), which, &value);
         return value;
+    }
+    // Of GDAL's tag, a number as text. libtiff does not know it, and hands out tags that it does not know with their size.
+    std::optional<double> noData(ValueType type) const {
+        constexpr std::uint32_t kTag = 42113;
+        const TIFFField* const field = TIFFFindField(tiff_.get(), kTag, TIFF_ANY);
+        if (!field || TIFFFieldDataType(field) != TIFF_ASCII || !TIFFFieldPassCount(field) ||
+            TIFFFieldReadCount(field) != TIFF_VARIABLE2)
+            return std::nullopt;
+        std::uint32_t size = 0;
+        const char* text = nullptr;
+        if (!TIFFGetField(tiff_.get(), kTag, &size, &text) || !text) return std::nullopt;
+        const std::string_view all(text, size);
+        std::size_t at = std::min(all.find_first_not_of(' '), all.size());
+        const std::optional<double> value = takeNumber(all, at);
+        const bool isRounded = value && type == ValueType::float32 &&
+                               std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max());
+        return isRounded ? std::optional(static_cast<double>(static_cast<float>(*value))) : value;
     }
     double expansion() const {
         return mostExpansion(tag<std::uint16_t>(TIFFTAG_COMPRESSION), tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH));

@@ -48,6 +48,21 @@ void requireFinite(const Grid& grid, const std::string& name) {
                   missing, grid.values.size(), first / grid.columns, first % grid.columns));
 }
 
+// What GeoTIFF marks as no height would be one far below or above all others.
+void requireData(const Grid& grid, double noData, const std::string& name) {
+    std::size_t missing = 0, first = 0;
+    for (std::size_t k = grid.values.size(); k-- > 0;) {
+        if (grid.values[k] != noData) continue;
+        ++missing;
+        first = k / grid.channels;
+    }
+    if (missing == 0) return;
+    throw InputError(
+        name, fmt::format("{} of {} samples are without data ({}), the first at row {}, column {}; fill "
+                          "them or crop",
+                          missing, grid.values.size(), noData, first / grid.columns, first % grid.columns));
+}
+
 Picture sized(const Grid& grid) {
     return {.width = static_cast<std::int64_t>(grid.columns), .height = static_cast<std::int64_t>(grid.rows)};
 }
@@ -60,6 +75,7 @@ Grid readGrid(const std::filesystem::path& path, bool gaps) {
     Grid grid{static_cast<std::size_t>(picture.height), static_cast<std::size_t>(picture.width),
               static_cast<std::size_t>(heightChannels(picture)), heights(picture, name)};
     if (grid.rows < 2 || grid.columns < 2) throw InputError(name, "has fewer than 2 rows or columns");
+    if (!gaps && picture.noData) requireData(grid, *picture.noData, name);
     if (!gaps) requireFinite(grid, name);
     return grid;
 }

@@ -204,8 +204,9 @@ TEST(Pictures, WrittenAreReadBack) {
     EXPECT_THAT(complaint([&] { readGrid(fresh("x.bmp")); }), HasSubstr(".npy .asc .png .tif"));
 }
 
-// A float TIFF, uncompressed, one strip, made by hand.
-std::string tiff(const std::vector<float>& values, unsigned columns, unsigned rows) {
+// A float TIFF, uncompressed, one strip, made by hand. noData: of up to three letters, for GDAL's tag.
+std::string tiff(const std::vector<float>& values, unsigned columns, unsigned rows,
+                 const std::string& noData = "") {
     std::string bytes("II*\0", 4);
     const auto put = [&](unsigned value, int size) {
         for (int k = 0; k < size; ++k) bytes += static_cast<char>(value >> (8 * k) & 255);
@@ -216,12 +217,18 @@ std::string tiff(const std::vector<float>& values, unsigned columns, unsigned ro
     const unsigned entries[][3] = {{256, 4, columns}, {257, 4, rows}, {258, 3, 32}, {259, 3, 1},
                                    {262, 3, 1},       {273, 4, 8},    {277, 3, 1},  {278, 4, rows},
                                    {279, 4, data},    {339, 3, 3}};
-    put(10, 2);
+    put(noData.empty() ? 10 : 11, 2);
     for (const auto& [tag, type, value] : entries) {
         put(tag, 2);
         put(type, 2);
         put(1, 4);
         put(value, 4);
+    }
+    if (!noData.empty()) {
+        put(42113, 2);
+        put(2, 2);
+        put(static_cast<unsigned>(noData.size()) + 1, 4);
+        bytes += noData + std::string(4 - noData.size(), '\0');
     }
     put(0, 4);
     return bytes;
@@ -238,6 +245,23 @@ TEST(Pictures, FloatTiffIsReadAndATruncatedOneRefused) {
                     HasSubstr(length < 4 ? "a.tif: is no TIFF" : "a.tif: cannot be read as a picture"))
             << length;
     }
+}
+
+// As elevation models come: sea and border hold -9999 or -3.4e38, and GDAL's tag says so.
+TEST(Pictures, SamplesThatATiffSaysAreNoDataAreNoHeights) {
+    const auto path = fresh("n.tif");
+    const auto write = [&](const std::vector<float>& values, const char* noData) {
+        std::ofstream(path, std::ios::binary) << tiff(values, 3, 2, noData);
+    };
+    write({1.5f, -9, 3, -9, 5, 6.25f}, "-9");
+    EXPECT_THAT(
+        complaint([&] { readGrid(path); }),
+        HasSubstr("2 of 6 samples are without data (-9), the first at row 0, column 1; fill them or crop"));
+    EXPECT_EQ(readGrid(path, true).values[1], -9);
+    write({1, 2, 3, 4, 5, 0.1f}, "0.1");  // no float is 0.1
+    EXPECT_THAT(complaint([&] { readGrid(path); }), HasSubstr("1 of 6 samples are without data"));
+    write({1, 2, 3, 4, 5, 6}, "-9");
+    EXPECT_THAT(readGrid(path).values, ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
 TEST(Pictures, DeepPngKeepsItsSixteenBits) {
