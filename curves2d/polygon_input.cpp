@@ -56,10 +56,14 @@ class Collector {
 
     PolygonInput finish() {
         if (result_.polygons.empty())
-            throw InputError(name_,
-                             tooShort_.number || others_.number
-                                 ? "no polygon of three points or more in it"
-                                 : "no polygon in it; expected Polygon or MultiPolygon, or lines 'x y'");
+            throw InputError(
+                name_,
+                others_.number
+                    ? fmt::format("no polygon of three points or more in it; of other kinds: {} (first: "
+                                  "{}); expected Polygon or MultiPolygon; isowave curve-levels reads lines",
+                                  others_.number, messageOf(others_.first.substr(0, kShown)))
+                : tooShort_.number ? std::string("no polygon of three points or more in it")
+                                   : "no polygon in it; expected Polygon or MultiPolygon, or lines 'x y'");
         say(unclosed_, "not closed, closed");
         say(tooShort_, "with fewer than three different points, left out");
         say(polar_, "around a pole, completed along the border of the map");

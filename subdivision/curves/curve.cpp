@@ -298,7 +298,8 @@ CurveLevels decompose(const Polyline& curve, const CurveFilters& filters, int le
         throw InputError("curve", "has " + std::to_string(m) + " points; " + std::to_string(levels) +
                                       " levels of " + (filters.closed() ? "a closed " : "an open ") +
                                       filters.scheme().name + " curve need " + needed +
-                                      "; these points allow " + most);
+                                      "; these points allow " + most +
+                                      "; ask for fewer with --depth, or resample with --points");
     }
     CurveLevels result{filters.scheme().name, curve, {}};
     for (int k = 0; k < levels; ++k) {

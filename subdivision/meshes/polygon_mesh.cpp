@@ -121,11 +121,14 @@ std::string faceDefect(const PolygonMesh& mesh) {
         if (face.size() < 3 || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) found.add(f);
     }
     if (found.count == 0) return {};
+    constexpr std::size_t kShown = 8;
     const auto face = mesh.face(found.first);
     return fmt::format(
         "{} degenerate (fewer than three different corners, or one vertex twice); the first is face {}, "
-        "with vertices {}; remove it",
-        plural(found.count, "face is", "faces are"), found.first, fmt::join(face, " "));
+        "with vertices {}{}; remove it",
+        plural(found.count, "face is", "faces are"), found.first,
+        fmt::join(face.first(std::min(face.size(), kShown)), " "),
+        face.size() > kShown ? fmt::format(" .. ({} in all)", face.size()) : "");
 }
 
 // The first edge with a defect, and how many there are.

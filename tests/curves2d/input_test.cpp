@@ -392,6 +392,14 @@ TEST_F(Polygons, EveryPrefixAndManyFlippedBytesAreReadOrRefusedInOneLine) {
     }
 }
 
+TEST_F(Polygons, AFileOfLinesIsToldWhatItHolds) {
+    EXPECT_THAT(errorOf([&] {
+                    readPolygons(file("l.geojson", R"({"type":"LineString","coordinates":[[0,0],[1,1]]})"));
+                }),
+                HasSubstr("of other kinds: 1 (first: LineString); expected Polygon or MultiPolygon; isowave "
+                          "curve-levels reads lines"));
+}
+
 TEST_F(Polygons, BadOnesAreRefusedInOneLine) {
     const auto error = [&](const std::string& name, const std::string& text) {
         return errorOf([&] { readPolygons(file(name, text)); });

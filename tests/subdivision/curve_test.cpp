@@ -490,7 +490,7 @@ TEST(BadCurve, TooShortSaysHowManyPointsAreNeeded) {
     const CurveFilters closed(curveScheme("dlg-refined"), true), open(curveScheme("cubic-7"), false);
     EXPECT_THAT(complaint([&] { decompose(noise(20, 2, true, 1), closed, 6); }),
                 HasSubstr("curve: has 20 points; 6 levels of a closed dlg-refined curve need at least 33; "
-                          "these points allow 5"));
+                          "these points allow 5; ask for fewer with --depth, or resample with --points"));
     EXPECT_THAT(complaint([&] { decompose(noise(4, 2, false, 1), open, 1); }),
                 HasSubstr("at least 5; these points allow 0"));
     EXPECT_THAT(complaint([&] { decompose(Polyline{}, Polyline{}.closed ? closed : open, 1); }),

@@ -48,6 +48,11 @@ TEST(PolygonMesh, HasALineForEveryDefect) {
          "the first is face 6, with vertices 0 1"},
         {with(cube(),
               [](auto& m) {
+                  m.addFace({0, 1, 2, 3, 4, 5, 6, 7, 0});
+              }),
+         "with vertices 0 1 2 3 4 5 6 7 .. (9 in all); remove it"},
+        {with(cube(),
+              [](auto& m) {
                   m.addFace({0, 1, 6});
               }),
          "more than two faces (not a 2-manifold); the first is between vertices 0 and 1, with 3"},
