@@ -353,7 +353,8 @@ std::int64_t volumesBehind(const std::string& name, const std::vector<std::int64
 
 bool beginsAsNifti(const fs::path& path) {
     const NiftiBytes bytes(path);
-    return bytes.held() >= kLength1 && (bytes.length() == kLength1 || bytes.length() == kLength2);
+    const bool isDicom = bytes.text(128, 4) == "DICM";  // the 128 bytes before may be anything, 348 too
+    return bytes.held() >= kLength1 && (bytes.length() == kLength1 || bytes.length() == kLength2) && !isDicom;
 }
 
 fs::path niftiHeaderOf(const fs::path& path) {

@@ -304,6 +304,17 @@ TEST_F(Dicom, FindsFilesWithoutNameAndPreamble) {
     EXPECT_THAT(slicesOf(readImage(folder)), ElementsAre(0, 1, 2));
 }
 
+// The 128 bytes before DICM may be anything.
+TEST_F(Dicom, IsNoNiftiWhereItsPreambleBeginsWith348) {
+    DicomSays says = axial(0, 7);
+    says.more.numbers(0x00180088, {2});
+    says.frames = 3;
+    says.pixels = framePixels({0, 1, 2});
+    std::string bytes = test::dicomFile(test::dicomSet(says));
+    bytes.replace(0, 4, std::string("\x5c\x01\0\0", 4));
+    EXPECT_THAT(slicesOf(readImage(put(folder / "IM0001", bytes))), ElementsAre(0, 1, 2));
+}
+
 TEST_F(Dicom, NamesWhatItLeavesOut) {
     series({0, 2, 4});
     put(folder / "notes.dcm", "no DICOM at all");
