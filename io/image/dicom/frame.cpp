@@ -65,6 +65,11 @@ std::string pixelProblem(const DicomObject& o, double samples) {
         return fmt::format("holds colours ({} samples a pixel); expected one number a voxel", samples);
     if (o.colour == "PALETTE COLOR") return "holds colours (PALETTE COLOR); expected one number a voxel";
     if (o.frames < 1) return fmt::format("says that it holds {} frames; expected one or more", o.frames);
+    // Slides of microscopes, and their segmentations: one large plane, of which each frame is a piece.
+    if (o.frames > 1 && o.file.set.number(tag::kMatrixColumns))
+        return fmt::format(
+            "its {} frames are tiles of one plane ({} says {:g}), not slices; expected a volume", o.frames,
+            tag::kMatrixColumns.name, *o.file.set.number(tag::kMatrixColumns));
     if (std::string bits = bitsProblem(o); !bits.empty()) return bits;
     return lengthProblem(o);
 }

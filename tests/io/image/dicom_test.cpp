@@ -429,6 +429,14 @@ TEST_F(DicomFrames, ThatAreTimesAreRefused) {
     EXPECT_THAT(test::refusal(write(says, {0, 1, 2})), HasSubstr("CineRate says 30"));
 }
 
+TEST_F(DicomFrames, ThatAreTilesOfASlideAreRefused) {
+    DicomSays says = axial(0, 7);
+    says.more.element(0x00480006, "UL", std::string("\x8\0\0\0", 4));
+    EXPECT_THAT(
+        test::refusal(write(says, {0, 1, 2})),
+        HasSubstr("its 3 frames are tiles of one plane (TotalPixelMatrixColumns says 8), not slices"));
+}
+
 TEST_F(DicomFrames, ThatAreViewsOfNuclearMedicineAreRefused) {
     DicomSays says = axial(0, 7);
     says.modality = "NM";
