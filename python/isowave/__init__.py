@@ -15,6 +15,7 @@ its way back, curve_levels() and relief() the same of curves and of heights. The
 from ._native import version as __version__
 from .errors import Error, InputError, OperationError, UsageError
 from ._meshes import Mesh
+from .labels import LabelLadders, each_label
 from .levels import Curve, CurveDetails, ReliefDetails, curve_levels, relief
 from .measure import Check, Comparison, Distance, check, compare
 from .plane import CurveLadder, CurveLevel, Ring, curves
@@ -36,6 +37,7 @@ __all__ = [
     "Filters",
     "Hierarchy",
     "InputError",
+    "LabelLadders",
     "Ladder",
     "Level",
     "Mesh",
@@ -51,6 +53,7 @@ __all__ = [
     "compare",
     "curve_levels",
     "curves",
+    "each_label",
     "field",
     "filters",
     "lod",

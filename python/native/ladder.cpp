@@ -1,6 +1,8 @@
 #include "python/native/ladder.h"
 
+#include <map>
 #include <memory>
+#include <tuple>
 
 #include "base/atomic_file.h"
 #include "isowave/error.h"
@@ -12,6 +14,7 @@
 #include "tools/output.h"
 #include "tools/report/json.h"
 #include "tools/report/ladder_report.h"
+#include "tools/solids/labels/each_label.h"
 #include "tools/solids/mesh_colours.h"
 #include "tools/solids/mesh_names.h"
 #include "tools/solids/solid_options.h"
@@ -179,6 +182,93 @@ py::tuple meshArrays(const LadderPointer& made, std::size_t i) {
                           rowsOf<float>(mesh.normals, owner));
 }
 
+// ---- labels, each a solid of its own
+
+using Label = std::tuple<double, std::string, ModelColour>;  // its name and colour behind it
+
+// Those of an image's file, but for 0, or those that are asked for, with the names and colours that it has for them.
+std::vector<Label> labelsOf(const std::filesystem::path& path, const GivenOptions& given,
+                            const py::object& watch) {
+    const SolidOptions options = SolidChoices(given).solid;
+    return watched(watch, [&](const Progress& progress) {
+        std::vector<Label> all;
+        for (const tools::NamedLabel& label : tools::namedLabels(path, options, progress))
+            all.emplace_back(label.label, label.name, label.colour);
+        return all;
+    });
+}
+
+// Without the meshes, which a report does not need.
+Ladder reportsOf(const Ladder& ladder) {
+    Ladder reports;
+    reports.input = ladder.input;
+    reports.fit = ladder.fit;
+    reports.K = ladder.K;
+    reports.order = ladder.order;
+    for (const Level& level : ladder.levels) reports.levels.push_back({level.report, {}});
+    reports.steps = ladder.steps;
+    reports.coefficientsStored = ladder.coefficientsStored;
+    reports.controlPoints = ladder.controlPoints;
+    reports.seconds = ladder.seconds;
+    reports.totalSeconds = ladder.totalSeconds;
+    reports.peakMemoryBytes = ladder.peakMemoryBytes;
+    reports.threads = ladder.threads;
+    return reports;
+}
+
+// Of the labels that are still there at that step.
+std::vector<ModelObject> objectsOf(const std::vector<Label>& labels,
+                                   const std::vector<LadderPointer>& ladders, int step) {
+    std::vector<ModelObject> objects;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        for (std::size_t level = 0; level < ladders[i]->levelCount(); ++level)
+            if (ladders[i]->ladder.levels[level].report.step == step)
+                objects.push_back({std::get<1>(labels[i]), std::get<2>(labels[i]), ladders[i]->mesh(level)});
+    return objects;
+}
+
+// What `isowave lod --each-label --format 3mf -o FOLDER` writes. REQUIRES: as many ladders as labels, and one at least, all made
+// with the same options.
+std::vector<std::filesystem::path> saveLabels(const std::vector<Label>& labels,
+                                              const std::vector<LadderPointer>& ladders,
+                                              const std::filesystem::path& folder, const std::string& space,
+                                              const std::vector<std::filesystem::path>& inputs,
+                                              const std::vector<std::string>& remarks,
+                                              const py::object& watch) {
+    const MadeLadder& first = *ladders.at(0);
+    const WriteChoice choice = choiceOf(first, "3mf", space, "");
+    return watched(watch, [&](const Progress& progress) {
+        tools::OutputFolder out(folder, tools::Inputs(inputs));
+        const tools::MeshNames names(out.name(), choice.format, first.choices.levels, first.choices.budgets);
+        tools::LabelLadders made;
+        std::map<int, std::string> fileOf;  // by step: a level of all labels is one file
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            const auto& [number, name, colour] = labels[i];
+            made.labels.push_back({number, name, colour});
+            made.ladders.push_back(reportsOf(ladders[i]->ladder));
+            made.files.push_back(filesOf(*ladders[i], names));
+            for (std::size_t level = 0; level < ladders[i]->levelCount(); ++level)
+                fileOf[ladders[i]->ladder.levels[level].report.step] = made.files.back().levels[level];
+        }
+        std::vector<std::filesystem::path> places;
+        try {
+            for (const auto& [step, file] : fileOf) {
+                progress.check();
+                writeThreeMfObjects(out.place(file), objectsOf(labels, ladders, step), choice.options);
+                made.written.push_back(file);
+                places.push_back(out.folder() / file);
+            }
+            tools::writeFiles(out, {{"report.json", tools::withRemarks(tools::jsonOf(made), remarks)}});
+            progress.check();
+            out.commit();
+        } catch (const OperationError& error) {
+            throw OperationError(out.publicText(error.what()));
+        }
+        places.push_back(out.folder() / "report.json");
+        return places;
+    });
+}
+
 }  // namespace
 
 void bindLadder(py::module_& module) {
@@ -191,6 +281,9 @@ void bindLadder(py::module_& module) {
         .def("write", write);
     module.def("make_ladder", make);
     module.def("check_ladder_options", check);
+    module.def("labels_of", labelsOf);
+    module.def("label_colour", modelColour);
+    module.def("save_labels", saveLabels);
 }
 
 }  // namespace isowave::python
