@@ -69,7 +69,12 @@ void applyValue(const Option& option, const std::string& value) {
     try {
         option.apply(value);
     } catch (const UsageError& error) {
-        throw UsageError(std::string(option.longName()) + ": " + error.what());
+        const bool isOption =
+            value.starts_with("--") && value.size() > 2;  // of "--glb-lods --colour distance"
+        throw UsageError(std::string(option.longName()) + ": " + error.what() +
+                         (isOption ? fmt::format("; {} is an option, and the value {} is missing before it",
+                                                 value, option.metavar)
+                                   : std::string()));
     }
 }
 

@@ -98,6 +98,11 @@ TEST(Parser, SaysWhichOptionLacksItsValue) {
     const Result result = isowave({"lod", "no.nrrd", "--iso", "-o", "x"});
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_NE(result.err.find("--iso: '-o' is not a number"), std::string::npos) << result.err;
+    const Result next = isowave({"lod", "no.stl", "--glb-lods", "--colour", "distance", "-o", "x"});
+    EXPECT_EQ(next.exitCode, 2);
+    EXPECT_NE(next.err.find("--colour is an option, and the value quantized|float is missing before it"),
+              std::string::npos)
+        << next.err;
 }
 
 // A length with a unit where none is taken, or with an unknown one: what to write instead.
