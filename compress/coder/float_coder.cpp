@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "compress/coder/contexts.h"
@@ -41,7 +42,9 @@ float floatOf(std::int32_t ordered) {
                                                    ordered ^ static_cast<std::int32_t>(0x80000000u))));
 }
 
+// Not a number is the least of all, as machines with SSE convert it: the files of others are the same.
 std::int32_t fixedOf(float value, double scale) {
+    if (value != value) return std::numeric_limits<std::int32_t>::min();
     return static_cast<std::int32_t>(
         std::clamp(std::floor(static_cast<double>(value) * scale + 0.5), -1073741824.0, 1073741824.0));
 }

@@ -44,6 +44,11 @@ def _range(name: str, value: Any) -> str:
             raise UsageError(f"{_option(name)}: {value} has {len(value)} numbers; expected (first, last)")
         first, last = value
         return f"{'' if first is None else _number(name, first)}..{'' if last is None else _number(name, last)}"
+    if isinstance(value, list):
+        whole = value and all(isinstance(number, numbers.Integral) for number in value)
+        if not whole or value != list(range(value[0], value[0] + len(value))):
+            raise UsageError(f"{_option(name)}: {value} leaves some out; give (first, last), both included, or all of them in order")
+        return f"{value[0]}..{value[-1]}"
     return _number(name, value)
 
 

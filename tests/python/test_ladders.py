@@ -140,10 +140,16 @@ def test_one_level_is_saved_in_the_format_of_its_name(gear, tmp_path):
         gear[2].save(tmp_path / "part.xyz")
 
 
-@pytest.mark.parametrize("levels, found", [(1, [1]), ("1..2", [1, 2]), ((1, 2), [1, 2]), (range(0, 2), [0, 1]), ((2, None), None)])
+@pytest.mark.parametrize("levels, found", [(1, [1]), ("1..2", [1, 2]), ((1, 2), [1, 2]), (range(0, 2), [0, 1]), ([0, 1], [0, 1]), ((2, None), None)])
 def test_ranges_of_levels(levels, found):
     made = [level.level for level in isowave.lod(GEAR, voxels=32, levels=levels)]
     assert made == found or (found is None and made[0] == 2)
+
+
+@pytest.mark.parametrize("levels", [[0, 2], [], [None, 1], ["a"]])
+def test_a_list_of_levels_leaves_none_out(levels):
+    with pytest.raises(isowave.UsageError, match="levels: .* leaves some out; give"):
+        isowave.lod(np.ones((2, 2, 2)), levels=levels)
 
 
 def test_steps_between_levels():

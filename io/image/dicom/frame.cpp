@@ -103,6 +103,10 @@ DicomObject objectOf(DicomFile& file) {
     for (const DicomSet& segment : set.items(tag::kSegments))
         o.segments.push_back(fmt::format("{} '{}'", segment.number(tag::kSegmentNumber, 0),
                                          oneLine(segment.text(tag::kSegmentLabel))));
+    if (set.text(tag::kSegmentationType) == "FRACTIONAL" && o.allocated > 1) {
+        o.mostFraction = std::max(1.0, set.number(tag::kMostFraction, 255));
+        o.remarks.push_back("its values are shares of a voxel, 0 to 1; half of it is --iso 0.5");
+    }
     if (set.item(tag::kModalityLut))
         o.remarks.push_back("its ModalityLUTSequence is not applied; values are as stored");
     o.file = std::move(file);
@@ -197,7 +201,8 @@ void takeSpacing(const Scope& scope, DicomFrame& frame) {
 
 // Where a scale is not said it is 1, and a scale of 0, which would leave nothing, is taken for not said.
 void takeValues(const Scope& scope, DicomObject& object, DicomFrame& frame) {
-    frame.slope = scope.number(tag::kValueTransformation, tag::kSlope, 1);
+    const double whole = frame.object->mostFraction;
+    frame.slope = whole > 0 ? 1 / whole : scope.number(tag::kValueTransformation, tag::kSlope, 1);
     frame.intercept = scope.number(tag::kValueTransformation, tag::kIntercept, 0);
     if (const auto dose = scope.top.number(tag::kDoseScaling)) {
         frame.slope = *dose;

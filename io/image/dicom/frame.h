@@ -28,8 +28,9 @@ struct DicomObject {
     ValueType type = ValueType::int16;  // uint8 for 1 bit, 16 bits for 12
     std::string colour;
     std::vector<std::string> segments;  // of a segmentation: "1 'liver'"
-    std::vector<std::string> remarks;   // what whoever uses the image has to know
-    std::string problem;                // why its pixels cannot be used; empty when they can
+    double mostFraction = 0;           // of one whose values are shares of a voxel: what stands for all of it
+    std::vector<std::string> remarks;  // what whoever uses the image has to know
+    std::string problem;               // why its pixels cannot be used; empty when they can
 
     std::int64_t pixels() const { return columns * rows; }
 };

@@ -13,7 +13,7 @@ Header headerOf(const PlacedStack& placed, const ImageReadOptions& options);
 SourcePtr framesSource(PlacedStack placed, Header header);
 
 // A segmentation: frames of several segments, of one bit or of a share of 255, each where its segment is not empty. A
-// voxel's value is the number of its segment, or 0; of one segment with shares, the share as it is stored. Slices
+// voxel's value is the number of its segment, or 0; of one segment with shares, the share, 0 to 1. Slices
 // without a frame are 0. options.stack chooses one segment by its place in the list. Throws InputError for frames that
 // do not lie on one lattice; reading it throws InputError where segments overlap.
 // REQUIRES: frames of one stack, each with a segment.

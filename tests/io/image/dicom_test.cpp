@@ -571,6 +571,32 @@ TEST_F(DicomSegments, ThatOverlapAreChosenByStack) {
     EXPECT_EQ(image.values[27], 2);
 }
 
+// Shares, as nets and atlases give them: 0, 64 and 128 of 128 are no labels.
+TEST_F(DicomSegments, OfSharesAreNumbersFrom0To1) {
+    DicomSays says;
+    says.sop = "1.2.840.10008.5.1.4.1.1.66.4";
+    says.modality = "SEG";
+    says.allocated = says.stored = 8;
+    says.isSigned = 0;
+    says.frames = 2;
+    std::vector<DicomOut> groups(2);
+    for (int i = 0; i < 2; ++i) {
+        DicomOut position, segment;
+        position.numbers(0x00200032, {0, 0, double(i)});
+        segment.us(0x0062000B, 1);
+        groups[static_cast<std::size_t>(i)].sequence(0x00209113, {position}).sequence(0x0062000A, {segment});
+    }
+    says.more.text(0x00620001, "CS", "FRACTIONAL").us(0x0062000E, 128).sequence(0x52009230, groups);
+    says.pixels.assign(40, '\0');
+    says.pixels[5] = 64;
+    says.pixels[26] = '\x80';
+    const Image image = readImage(slice("seg.dcm", says));
+    EXPECT_EQ(image.values[5], 0.5f);
+    EXPECT_EQ(image.values[26], 1);
+    EXPECT_EQ(image.values[0], 0);
+    EXPECT_FALSE(image.integral);
+}
+
 // ---- pixels
 
 TEST_F(Dicom, CutsOffBitsBesideTheValue) {

@@ -71,7 +71,8 @@ std::vector<int> allOf(ImageStream stream) {
             [&](auto voxels) {
                 for (std::size_t i = 0; i < voxels.size(); ++i)
                     values[static_cast<std::size_t>(slab.z0 * kSize[0] * kSize[1]) + i] =
-                        static_cast<int>(voxels[i]);
+                        voxels[i] == voxels[i] ? static_cast<int>(voxels[i])
+                                               : -1;  // no number is none of them
             },
             slab.voxels);
     });
