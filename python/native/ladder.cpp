@@ -124,6 +124,15 @@ tools::LadderFiles filesOf(const MadeLadder& made, const tools::MeshNames& names
     return files;
 }
 
+// The report beside the meshes; then all of the folder appears. Returns the report's place.
+std::filesystem::path finish(tools::OutputFolder& out, const std::string& report,
+                             const std::vector<std::string>& remarks, const Progress& progress) {
+    tools::writeFiles(out, {{"report.json", tools::withRemarks(report, remarks)}});
+    progress.check();
+    out.commit();
+    return out.folder() / "report.json";
+}
+
 // What `isowave lod -o FOLDER` writes. inputs: what no file may take the place of.
 std::vector<std::filesystem::path> save(const MadeLadder& made, const std::filesystem::path& folder,
                                         const std::string& format, const std::string& space,
@@ -154,14 +163,10 @@ std::vector<std::filesystem::path> save(const MadeLadder& made, const std::files
                 files.tiles = tileChoice.folderOf(out.name());
                 places.push_back(out.folder() / files.tiles);
             }
-            tools::writeFiles(
-                out, {{"report.json", tools::withRemarks(tools::jsonOf(made.ladder, files), remarks)}});
-            progress.check();
-            out.commit();
+            places.push_back(finish(out, tools::jsonOf(made.ladder, files), remarks, progress));
         } catch (const OperationError& error) {
             throw OperationError(out.publicText(error.what()));
         }
-        places.push_back(out.folder() / "report.json");
         return places;
     });
 }
@@ -258,13 +263,10 @@ std::vector<std::filesystem::path> saveLabels(const std::vector<Label>& labels,
                 made.written.push_back(file);
                 places.push_back(out.folder() / file);
             }
-            tools::writeFiles(out, {{"report.json", tools::withRemarks(tools::jsonOf(made), remarks)}});
-            progress.check();
-            out.commit();
+            places.push_back(finish(out, tools::jsonOf(made), remarks, progress));
         } catch (const OperationError& error) {
             throw OperationError(out.publicText(error.what()));
         }
-        places.push_back(out.folder() / "report.json");
         return places;
     });
 }
