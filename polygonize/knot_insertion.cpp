@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "polygonize/blocks.h"
@@ -80,48 +82,76 @@ struct FineBlock {
 };
 using FineBlocks = std::array<FineBlock, 8>;
 
+CoarseValues valuesOf(const PaddedBlock& padded) {
+    CoarseValues values;
+    for (int x = 0, n = 0; x < kCoarse; ++x)
+        for (int y = 0; y < kCoarse; ++y)
+            for (int z = 0; z < kCoarse; ++z, ++n) values[n] = padded.at(x - 1, y - 1, z - 1);
+    return values;
+}
+
+// 1 in I. Weights are positive, so a sum > 0 has a term in I.
+CoarseValues knownOf(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin) {
+    CoarseValues known;
+    for (int x = 0, n = 0; x < kCoarse; ++x)
+        for (int y = 0; y < kCoarse; ++y)
+            for (int z = 0; z < kCoarse; ++z, ++n)
+                known[n] = accessor.isValueOn(origin.offsetBy(x - 1, y - 1, z - 1));
+    return known;
+}
+
+// isActive(n, at, value): of the leaf's n-th point, which lies at `at` from the first fine point of the coarse block.
+template <class IsActive>
+FineBlock fineBlockOf(const FineValues& values, const Coord& origin, const Coord& corner,
+                      const IsActive& isActive) {
+    FineBlock block;
+    block.leaf = std::make_unique<Leaf>(origin + corner, 0.0f, false);
+    Leaf& leaf = *block.leaf;
+    bool constant = true;
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+        const Coord at = corner + Leaf::offsetToLocalCoord(n);
+        const int i = fineIndex(at.x(), at.y(), at.z());
+        const float value = static_cast<float>(values[i]);
+        const bool active = isActive(i, at, value);
+        leaf.setValueOnly(n, value);
+        if (active) leaf.setValueOn(n);
+        constant = constant && !active && value == leaf.getValue(0);
+    }
+    block.tile = leaf.getValue(0);
+    if (constant) block.leaf.reset();
+    return block;
+}
+
 FineBlocks fineBlocksOf(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin,
                         const Refinement& refinement) {
     PaddedBlock padded;
     padded.gather(accessor, origin);
-    CoarseValues values, known;  // known: 1 in I. Weights are positive, so a sum > 0 has a term in I
-    for (int x = 0, n = 0; x < kCoarse; ++x)
-        for (int y = 0; y < kCoarse; ++y)
-            for (int z = 0; z < kCoarse; ++z, ++n) {
-                values[n] = padded.at(x - 1, y - 1, z - 1);
-                known[n] = accessor.isValueOn(origin.offsetBy(x - 1, y - 1, z - 1));
-            }
-    FineValues fineValues, fineKnown;
-    insertKnots(values, fineValues, refinement.axes);
-    insertKnots(known, fineKnown, refinement.axes);
-
+    FineValues values, known;
+    insertKnots(valuesOf(padded), values, refinement.axes);
+    insertKnots(knownOf(accessor, origin), known, refinement.axes);
     FineBlocks blocks;
-    for (int b = 0; b < 8; ++b) {
-        if (!refinement.has(b)) continue;
-        const Coord corner = refinement.corner(b);
-        auto leaf = std::make_unique<Leaf>(refinement.fine(origin) + corner, 0.0f, false);
-        bool constant = true;
-        for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-            const Coord at = corner + Leaf::offsetToLocalCoord(n);
-            const int i = fineIndex(at.x(), at.y(), at.z());
-            const float value = static_cast<float>(fineValues[i]);
-            const bool active = fineKnown[i] > 0 ||
-                                value != padded.at(at.x() / refinement.times(0), at.y() / refinement.times(1),
-                                                   at.z() / refinement.times(2));
-            leaf->setValueOnly(n, value);
-            if (active) leaf->setValueOn(n);
-            constant = constant && !active && value == leaf->getValue(0);
-        }
-        blocks[b].tile = leaf->getValue(0);
-        if (!constant) blocks[b].leaf = std::move(leaf);
-    }
+    for (int b = 0; b < 8; ++b)
+        if (refinement.has(b))
+            blocks[b] =
+                fineBlockOf(values, refinement.fine(origin), refinement.corner(b),
+                            [&](int i, const Coord& at, float value) {
+                                return known[i] > 0 || value != padded.at(at.x() / refinement.times(0),
+                                                                          at.y() / refinement.times(1),
+                                                                          at.z() / refinement.times(2));
+                            });
     return blocks;
 }
 
-openvdb::FloatTree::Ptr fineControlPoints(const openvdb::FloatTree& coarse, const Refinement& refinement,
-                                          const Progress& progress) {
+void put(FineBlock&& block, const Coord& at, openvdb::tree::ValueAccessor<openvdb::FloatTree>& tree) {
+    if (block.leaf)
+        tree.addLeaf(block.leaf.release());
+    else
+        tree.addTile(1, at, block.tile, false);
+}
+
+// Where the coarse field has one value.
+openvdb::FloatTree::Ptr fineTiles(const openvdb::FloatTree& coarse, const Refinement& refinement) {
     auto fine = std::make_shared<openvdb::FloatTree>(coarse.background());
-    // Regions of one value first, then what lies over them.
     auto tile = coarse.cbeginValueAll();
     tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
@@ -130,24 +160,114 @@ openvdb::FloatTree::Ptr fineControlPoints(const openvdb::FloatTree& coarse, cons
         fine->sparseFill({refinement.fine(box.min()), refinement.fine(box.max().offsetBy(1)).offsetBy(-1)},
                          *tile, false);
     }
-    const std::vector<Coord> origins = variedBlocks(coarse);
-    std::vector<FineBlocks> blocks(origins.size());
+    return fine;
+}
+
+template <class Body>
+void forEachBlock(const std::vector<Coord>& origins, const openvdb::FloatTree& tree, const Progress& progress,
+                  const Body& body) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, origins.size(), 16), [&](const auto& range) {
         progress.check();
-        const openvdb::FloatGrid::ConstUnsafeAccessor accessor(coarse);
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-            blocks[i] = fineBlocksOf(accessor, origins[i], refinement);
+        const openvdb::FloatGrid::ConstUnsafeAccessor accessor(tree);
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, accessor);
+    });
+}
+
+openvdb::FloatTree::Ptr fineControlPoints(const openvdb::FloatTree& coarse, const Refinement& refinement,
+                                          const Progress& progress) {
+    const openvdb::FloatTree::Ptr fine = fineTiles(coarse, refinement);
+    const std::vector<Coord> origins = variedBlocks(coarse);
+    std::vector<FineBlocks> blocks(origins.size());
+    forEachBlock(origins, coarse, progress, [&](std::size_t i, const auto& accessor) {
+        blocks[i] = fineBlocksOf(accessor, origins[i], refinement);
     });
     openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(*fine);
     for (std::size_t i = 0; i < blocks.size(); ++i)
-        for (int b = 0; b < 8; ++b) {
-            if (!refinement.has(b)) continue;
-            if (blocks[i][b].leaf)
-                accessor.addLeaf(blocks[i][b].leaf.release());
-            else
-                accessor.addTile(1, refinement.fine(origins[i]) + refinement.corner(b), blocks[i][b].tile,
-                                 false);
+        for (int b = 0; b < 8; ++b)
+            if (refinement.has(b))
+                put(std::move(blocks[i][b]), refinement.fine(origins[i]) + refinement.corner(b), accessor);
+    return fine;
+}
+
+// ---- only where the surface is
+
+enum class Side : std::uint8_t { outside, inside, both };
+
+// Control points that are no numbers count as both, so that whoever reads the fine field finds them.
+Side sideOf(const PaddedBlock& block, float iso) {
+    bool inside = false, outside = false;
+    for (const float c : block.values) {
+        inside |= !(c >= iso);
+        outside |= !(c < iso);
+    }
+    return !inside ? Side::outside : !outside ? Side::inside : Side::both;
+}
+
+// Some of a block's 2^3 fine blocks, in the order of FineBlocks.
+using Octants = unsigned;
+
+// Those of the block (dx, dy, dz) further that touch this one.
+Octants octantsTouching(const Coord& d) {
+    constexpr Octants kHigh[3] = {0xf0, 0xcc, 0xaa};
+    Octants touching = 0xff;
+    for (int axis = 0; axis < 3; ++axis)
+        if (d[axis] != 0) touching &= d[axis] < 0 ? kHigh[axis] : ~kHigh[axis];
+    return touching;
+}
+
+// One voxel a block: its fine blocks on whose cells the surface can be, and all those around them.
+std::shared_ptr<const openvdb::Int32Tree> octantsAtSurface(const std::vector<Coord>& origins,
+                                                           const std::vector<Side>& sides) {
+    auto wanted = std::make_shared<openvdb::Int32Tree>(0);
+    openvdb::tree::ValueAccessor<openvdb::Int32Tree> accessor(*wanted);
+    for (std::size_t i = 0; i < origins.size(); ++i)
+        for (int n = 0; n < 27 && sides[i] == Side::both; ++n) {
+            const Coord further(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1), block = (origins[i] >> 3) + further;
+            const Octants before = static_cast<Octants>(accessor.getValue(block));
+            accessor.setValue(block, static_cast<std::int32_t>(before | octantsTouching(further)));
         }
+    return wanted;
+}
+
+// A block of one side is one of any value on that side.
+FineBlocks blocksAtSurface(const openvdb::FloatGrid::ConstUnsafeAccessor& accessor, const Coord& origin,
+                           Octants wanted, float elsewhere, const Refinement& refinement) {
+    FineBlocks blocks;
+    for (FineBlock& block : blocks) block.tile = elsewhere;
+    if (wanted == 0) return blocks;
+    PaddedBlock padded;
+    padded.gather(accessor, origin);
+    FineValues values;
+    insertKnots(valuesOf(padded), values, refinement.axes);
+    for (int b = 0; b < 8; ++b)
+        if (wanted >> b & 1)
+            blocks[b] = fineBlockOf(values, refinement.fine(origin), refinement.corner(b),
+                                    [](int, const Coord&, float) { return false; });
+    return blocks;
+}
+
+openvdb::FloatTree::Ptr fineControlPointsAtSurface(const openvdb::FloatTree& coarse, float iso, float K,
+                                                   const Progress& progress) {
+    const Refinement refinement{{true, true, true}};
+    const std::vector<Coord> origins = variedBlocks(coarse);
+    std::vector<Side> sides(origins.size());
+    forEachBlock(origins, coarse, progress, [&](std::size_t i, const auto& accessor) {
+        PaddedBlock padded;
+        padded.gather(accessor, origins[i]);
+        sides[i] = sideOf(padded, iso);
+    });
+    const std::shared_ptr<const openvdb::Int32Tree> wanted = octantsAtSurface(origins, sides);
+    std::vector<FineBlocks> blocks(origins.size());
+    forEachBlock(origins, coarse, progress, [&](std::size_t i, const auto& accessor) {
+        const auto octants = static_cast<Octants>(wanted->getValue(origins[i] >> 3));
+        blocks[i] =
+            blocksAtSurface(accessor, origins[i], octants, sides[i] == Side::inside ? -K : K, refinement);
+    });
+    const openvdb::FloatTree::Ptr fine = fineTiles(coarse, refinement);
+    openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(*fine);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        for (int b = 0; b < 8; ++b)
+            put(std::move(blocks[i][b]), refinement.fine(origins[i]) + refinement.corner(b), accessor);
     return fine;
 }
 
@@ -194,6 +314,17 @@ Shape::Ptr shapeOf(const openvdb::FloatGrid& controlPoints, const Progress& prog
 
 BSplineField insertKnots(const BSplineField& field, const Progress& progress) {
     return insertKnots(field, AxisChoice{true, true, true}, progress);
+}
+
+BSplineField insertKnotsAtSurface(const BSplineField& field, double iso, const Progress& progress) {
+    const auto transform = field.transform().copy();
+    transform->preScale(0.5);
+    BSplineField fine;
+    fine.K = field.K;
+    fine.controlPoints = openvdb::FloatGrid::create(fineControlPointsAtSurface(
+        field.controlPoints->tree(), static_cast<float>(iso), static_cast<float>(field.K), progress));
+    fine.controlPoints->setTransform(transform);
+    return fine;
 }
 
 BSplineField insertKnots(BSplineField field, std::array<int, 3> times, const Progress& progress) {

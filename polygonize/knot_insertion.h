@@ -20,6 +20,12 @@ BSplineField insertKnots(const BSplineField& field, const Progress& progress = {
 using AxisChoice = std::array<bool, 3>;
 BSplineField insertKnots(const BSplineField& field, const AxisChoice& axes, const Progress& progress = {});
 
+// The same, on the blocks of 8^3 fine lattice points on whose cells F = iso can be and on the blocks around those; elsewhere
+// K or -K, the side that F - iso has there. So { F = iso } is the same to the bit, and most of the price of a fine lattice,
+// which is paid away from the surface, is saved (docs/performance.md). No control point is active, and there is no shape.
+// REQUIRES: |iso| < K.
+BSplineField insertKnotsAtSurface(const BSplineField& field, double iso, const Progress& progress = {});
+
 // And again, `times` on each axis: onto a lattice 2^times as fine. No times: the field itself.
 BSplineField insertKnots(BSplineField field, std::array<int, 3> times, const Progress& progress = {});
 

@@ -546,7 +546,7 @@ TriangleMesh polygonize(const BSplineField& field, const PolygonizeOptions& opti
     if (options.refine > 1) {
         PolygonizeOptions rest = options;
         rest.refine /= 2;
-        return polygonize(insertKnots(field, progress), rest, progress);
+        return polygonize(insertKnotsAtSurface(field, options.iso, progress), rest, progress);
     }
     constexpr std::string_view kStage = "polygonizing";
     const ShiftedField shifted(field, options.iso);
