@@ -73,9 +73,22 @@ LatticeFunction onPointsAndBetween(const LatticeFunction& c, int axis) {
     });
 }
 
+// F < 0 only nearer than two to a control point < 0. The leaves' own box, which is rounded to blocks of 8, can hold three times as many
+// lattice points, and so many too many for the decided lattice: socket_box.stl kept a cavity at level 3 that no other lattice has.
 CoordBBox boxOf(const openvdb::FloatTree& tree) {
     CoordBBox box;
-    if (!tree.evalLeafBoundingBox(box)) return {Coord(0), Coord(1)};
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+        const CoordBBox whole(leaf->origin(), leaf->origin().offsetBy(7));
+        if (box.isInside(whole)) continue;
+        const float* values = leaf->buffer().data();
+        for (openvdb::Index n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n)
+            if (values[n] < 0) box.expand(leaf->offsetToGlobalCoord(n));
+    }
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile < 0) box.expand(tile.getBoundingBox());
+    if (box.empty()) return {Coord(0), Coord(1)};
     return {box.min().offsetBy(-2), box.max().offsetBy(2)};
 }
 
