@@ -76,6 +76,13 @@ std::int64_t excess(const SolidCounts& now, const SolidCounts& before) {
            more(now.cavities, before.cavities);
 }
 
+// An error of 1 is 100 %. "0.31", "12", "150".
+std::string percentText(double error) {
+    const double percent = 100 * std::abs(error);
+    return percent < 99.5 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent);
+}
+std::string moreOrLess(double error) { return percentText(error) + (error < 0 ? " % less" : " % more"); }
+
 FeatureFate fateOf(const Survival& s, std::int64_t now) {
     return {s.survived,          s.closed,         s.torn, std::max<std::int64_t>(0, now - s.survived),
             s.smallestSurviving, s.largestVanished};
@@ -497,22 +504,30 @@ void LevelMesher::tellDifference(const LevelReport& report) const {
                            counted(c.cavities, "cavity", "cavities"));
     };
     const double thinnest = report.walls.empty() ? 1.0 : report.walls.front().voxels;
-    progress_.say(
-        fmt::format("level 0 is not the input: {}{:+.2g} % of its volume; voxels {:.2g} times as large "
-                    "would hold it better",
-                    differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", 100 * error,
-                    std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
+    progress_.say(fmt::format(
+        "level 0 is not the input: {}{} volume; voxels {:.2g} times as large would hold it better",
+        differs ? text(counts) + " for " + text(*truth_.counts) + ", " : "", moreOrLess(error),
+        std::clamp(thinnest / kHeldVoxels, 0.1, 0.5)));
 }
 
 // The level before has half the voxel, and so has the same level of a solid with voxels half as large: docs/hold.md has TR12J at both.
+// What gains volume first may be nearly gone a level later, which is said by itself.
 void LevelMesher::tellVolume(const LevelReport& report) {
+    constexpr double kMostlyGone = 0.5;
     if (report.step == 0 || report.vanished() || options_.preserveVolume || !report.volumeError) return;
-    if (std::abs(*report.volumeError) <= kVolumeTold || std::exchange(toldOfVolume_, true)) return;
-    progress_.say(fmt::format(
-        "{}: {:+.2g} % of the volume of {}, more than {:.0f} %; the level before it, or voxels half as "
-        "large, would be nearer",
-        nameOf(report), 100 * *report.volumeError, truth_.volume ? "the input" : "level 0",
-        100 * kVolumeTold));
+    const double error = *report.volumeError;
+    if (std::abs(error) <= kVolumeTold) return;
+    const std::string told = fmt::format("{}: its volume is {} than {}", nameOf(report), moreOrLess(error),
+                                         truth_.volume ? "the input's" : "level 0's");
+    if (error < -kMostlyGone && !std::exchange(toldOfLoss_, true)) {
+        toldOfVolume_ = true;
+        progress_.say(told + ": most of the solid is gone; use the levels before it");
+    } else if (!std::exchange(toldOfVolume_, true)) {
+        progress_.say(
+            told +
+            fmt::format(", beyond {:.0f} %; the level before it, or voxels half as large, would be nearer",
+                        100 * kVolumeTold));
+    }
 }
 
 double LevelMesher::isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const {

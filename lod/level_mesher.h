@@ -137,7 +137,7 @@ class LevelMesher {
     StageClock& clock_;
     std::unique_ptr<Level0> level0_;
     std::optional<LevelRegions> regions_;
-    bool toldOfRegions_ = false, toldOfVolume_ = false;
+    bool toldOfRegions_ = false, toldOfVolume_ = false, toldOfLoss_ = false;
 };
 
 }  // namespace isowave::lod

@@ -143,7 +143,8 @@ void putTruth(InputReport& report, const ClosedMesh& input, double voxel,
     if (!topology.manifold()) return unknown("its surface touches itself along edges or at points");
     const MeshComponents components = componentsOf(mesh);
     if (componentsTouch(points, mesh.triangles, components.of, components.count(), signs))
-        return unknown("parts of it overlap, or lie nearer than a quarter of a voxel");
+        return unknown(components.count() > 1 ? "parts of it overlap, or lie nearer than a quarter of a voxel"
+                                              : "it overlaps itself");
     report.parts = topology.parts;
     report.handles = topology.genus;
     report.cavities = topology.cavities;
