@@ -257,6 +257,12 @@ TEST(DecidedLattice, HasTheTopologyOfTheMesh) {
     }
 }
 
+TEST(MeshLattice, IsNoLargerThanTheSolid) {
+    const double points = latticePoints(fieldFromDistance(16, sphere(5)), 1);
+    EXPECT_GE(points, std::pow(2 * 5 + 1, 3));
+    EXPECT_LE(points, std::pow(2 * 5 + 1 + 2 * 4, 3)) << "the leaves' box has 32^3";
+}
+
 TEST(MeshLattice, HoldsTheSplineAtLatticePointsAndBetween) {
     const BSplineField field = fieldFromDistance(8, torus(5, 2));
     const MeshLattice lattice = meshLattice(field, 2);

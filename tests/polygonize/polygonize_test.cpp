@@ -462,6 +462,27 @@ TEST(RefineField, IsTheSameFunction) {
     }
 }
 
+// Twice, as refine 4 does it; and away from it there is little.
+TEST(RefineField, AtTheSurfaceAloneHasTheSameMesh) {
+    for (const BSplineField& field :
+         {fieldFromDistance(40, torus(25, 9)), fieldFromDistance(20, sphere(13)), noiseField(16, 3)})
+        for (const double iso : {0.0, 0.4 * field.K, -0.4 * field.K}) {
+            BSplineField all = field, near = field;
+            for (int times = 0; times < 2; ++times) {
+                all = insertKnots(all);
+                near = insertKnotsAtSurface(near, iso);
+                const TriangleMesh expected = polygonize(all, {.iso = iso}),
+                                   mesh = polygonize(near, {.iso = iso});
+                EXPECT_FALSE(expected.triangles.empty());
+                EXPECT_EQ(mesh.points, expected.points);
+                EXPECT_EQ(mesh.triangles, expected.triangles);
+            }
+        }
+    const BSplineField field = fieldFromDistance(40, torus(25, 9));
+    EXPECT_LT(insertKnotsAtSurface(field, 0).controlPoints->tree().leafCount(),
+              0.7 * insertKnots(field).controlPoints->tree().leafCount());
+}
+
 TEST(RefineField, OnSomeAxesIsTheSameFunctionToo) {
     const std::vector<BSplineField> fields{fieldFromDistance(14, torus(7, 3)), noiseField(16, 3)};
     std::mt19937 random(1);

@@ -519,6 +519,8 @@ class DicomSegments : public DicomFrames {
         }
         DicomOut liver, lung;
         liver.us(0x00620004, 3).text(0x00620005, "LO", "liver");
+        // sRGB's red, which is CIELab (54.29, 80.80, 69.89) of white D50.
+        liver.us(0x0062000D, std::vector{35579, 53662, 50858});
         lung.us(0x00620004, 7).text(0x00620005, "LO", "left lung");
         says.more.sequence(0x00620002, {liver, lung});
         says.more.sequence(0x52009230, groups);
@@ -548,6 +550,15 @@ TEST_F(DicomSegments, HaveNames) {
     EXPECT_EQ(segments[0].name, "liver");
     EXPECT_EQ(segments[1].label, 7);
     EXPECT_EQ(segments[1].name, "left lung");
+}
+
+TEST_F(DicomSegments, HaveTheColoursThatTheFileSays) {
+    const auto segments = imageio::segmentsOf(write({3, 7}, {0, 1}, {5, 6}));
+    ASSERT_EQ(segments.size(), 2u);
+    const std::array<std::uint8_t, 3> red{255, 0, 0};
+    ASSERT_TRUE(segments[0].colour);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR((*segments[0].colour)[i], red[i], 2);
+    EXPECT_FALSE(segments[1].colour) << "it says none";
 }
 
 TEST_F(DicomSegments, AreAStackBesideSlices) {

@@ -22,6 +22,11 @@ class DicomOut {
         return element(tag, vr, value);
     }
     DicomOut& us(std::uint32_t tag, int value) { return element(tag, "US", integer(value, 2)); }
+    DicomOut& us(std::uint32_t tag, const std::vector<int>& values) {
+        std::string all;
+        for (const int value : values) all += integer(static_cast<std::uint64_t>(value), 2);
+        return element(tag, "US", all);
+    }
     DicomOut& at(std::uint32_t tag, std::uint32_t value) {
         return element(tag, "AT", integer(value >> 16, 2) + integer(value & 0xFFFF, 2));
     }

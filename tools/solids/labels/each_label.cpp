@@ -144,9 +144,13 @@ std::string jsonOf(const LabelLadders& made) {
 
 std::string textOf(const LabelLadders& made) {
     std::string text;
-    for (std::size_t i = 0; i < made.labels.size(); ++i)
-        text += fmt::format("{}{} (label {}):\n{}", i == 0 ? "" : "\n", made.labels[i].name,
-                            made.labels[i].label, textOf(made.ladders[i], made.files[i], made.unit));
+    for (std::size_t i = 0; i < made.labels.size(); ++i) {
+        const auto& [label, name, colour] = made.labels[i];
+        const std::string number = fmt::format("label {}", label);
+        text += fmt::format("{}{}:\n{}", i == 0 ? "" : "\n",
+                            name == number ? name : fmt::format("{} ({})", name, number),
+                            textOf(made.ladders[i], made.files[i], made.unit));
+    }
     return text;
 }
 
