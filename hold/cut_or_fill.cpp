@@ -11,8 +11,10 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/number_text.h"
+#include "hold/mesh_counter.h"
 #include "hold/plug.h"
 #include "hold/topology_candidates.h"
 #include "hold/until_stopped.h"
@@ -70,6 +72,30 @@ constexpr std::size_t kSpare = 16;
 // Cells of the lattice: among edits that move no more, order does not matter.
 constexpr double kLittle = 4;
 
+BSplineField withOwnGrids(BSplineField field) {
+    field.controlPoints = field.controlPoints->deepCopy();
+    field.shape = field.shape->deepCopy();
+    return field;
+}
+
+// Control points and signs that apply() (local_edit.h) may have changed for an edit with this box.
+void copyAround(const CoordBBox& box, const BSplineField& from, BSplineField& to) {
+    constexpr int kChanges = 3;
+    CoordBBox around = box;
+    around.expand(kChanges);
+    const auto values = from.controlPoints->getConstAccessor();
+    const auto signs = from.shape->getConstAccessor();
+    auto toValues = to.controlPoints->getAccessor();
+    auto toSigns = to.shape->getAccessor();
+    for (auto at = around.begin(); at; ++at) {
+        if (toValues.getValue(*at) != values.getValue(*at)) toValues.setValueOnly(*at, values.getValue(*at));
+        if (toValues.isValueOn(*at) != values.isValueOn(*at))
+            toValues.setActiveState(*at, values.isValueOn(*at));
+        if (toSigns.getValue(*at) != signs.getValue(*at)) toSigns.setValueOnly(*at, signs.getValue(*at));
+        if (toSigns.isValueOn(*at) != signs.isValueOn(*at)) toSigns.setActiveState(*at, signs.isValueOn(*at));
+    }
+}
+
 class Limiter {
   public:
     Limiter(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
@@ -89,9 +115,11 @@ class Limiter {
     }
 
   private:
-    SolidCounts count(const BSplineField& field) const {
-        return meshedCounts(field, refine_, smallest_, progress_);
-    }
+    // What the field becomes where edits are put in, and the counts of its mesh.
+    struct Attempt {
+        BSplineField field;
+        MeshCounter counter;
+    };
     std::int64_t tooMany(What what) const {
         const std::int64_t now = countOf(result_.after, what);
         return now - std::min(now, limitOf(limits_, what).value_or(now));
@@ -225,23 +253,39 @@ class Limiter {
 
     void take(const std::vector<Choice>& batch) {
         if (batch.empty()) return;
-        BSplineField changed = field_;
-        changed.controlPoints = field_.controlPoints->deepCopy();
-        changed.shape = field_.shape->deepCopy();
-        for (const Choice& choice : batch) apply(choice.change, changed);
-        const SolidCounts now = count(changed);
+        Attempt& attempt = attempted(batch);
+        const SolidCounts now = attempt.counter.counts();
         if (isAsWanted(now, batch)) {
             for (const Choice& choice : batch) result_.edits.push_back(made(choice));
-            field_ = changed;
+            if (std::exchange(hasSharedGrids_, false)) field_ = withOwnGrids(field_);
+            for (const Choice& choice : batch) apply(choice.change, field_);
             result_.after = now;
             for (const Choice& choice : batch) forgetAround(choice.change.box);
-        } else if (batch.size() == 1) {
+            return;
+        }
+        attempt.counter.undo();
+        for (const Choice& choice : batch) copyAround(choice.change.box, field_, attempt.field);
+        if (batch.size() == 1) {
             useless_.insert(batch.front().key);
         } else {
             const auto middle = batch.begin() + static_cast<std::ptrdiff_t>(batch.size() / 2);
             take({batch.begin(), middle});
             take({middle, batch.end()});
         }
+    }
+    // The field with the batch put in.
+    Attempt& attempted(const std::vector<Choice>& batch) {
+        if (!attempt_) {
+            attempt_.emplace(
+                Attempt{withOwnGrids(field_), MeshCounter(field_, refine_, smallest_, progress_)});
+        }
+        std::vector<CoordBBox> boxes;
+        for (const Choice& choice : batch) {
+            apply(choice.change, attempt_->field);
+            boxes.push_back(choice.change.box);
+        }
+        attempt_->counter.change(attempt_->field, boxes);
+        return *attempt_;
     }
     TopologyEdit made(const Choice& choice) const {
         TopologyEdit edit = choice.edit;
@@ -289,6 +333,8 @@ class Limiter {
     };
     std::map<std::vector<OptionKey>, Known> known_;
     PlugMemo plugs_;
+    std::optional<Attempt> attempt_;  // made when the first edit is tried
+    bool hasSharedGrids_ = true;      // field_: others may hold its grids, too
     TopologyEdits result_;
 };
 

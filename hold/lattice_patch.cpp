@@ -150,6 +150,15 @@ LatticePatch::LatticePatch(const LatticeFunction& controlPoints, const Coord& lo
     lattice_.function = toFloats(onPoints(std::move(c)));
 }
 
+void LatticePatch::gather(const Coord& origin, PaddedBlock& points) const {
+    const Coord at = origin - lattice_.low;  // fine_ begins one before lattice_
+    for (int x = -1; x < kBlock + 2; ++x)
+        for (int y = -1; y < kBlock + 2; ++y)
+            for (int z = -1; z < kBlock + 2; ++z)
+                points.values[PaddedBlock::index(x, y, z)] =
+                    fine_.values[fine_.index(at[0] + 1 + x, at[1] + 1 + y, at[2] + 1 + z)];
+}
+
 // The cell's triangles, its vertices inside, and those on the edges that start at its lowest corner.
 void LatticePatch::countCell(const Coord& low, Count& count) const {
     const LatticeFunction& f = lattice_.function;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "hold/mesh_lattice.h"
+#include "polygonize/blocks.h"
 
 namespace isowave {
 
@@ -17,6 +18,10 @@ class LatticePatch {
 
     // F. finer is `refine`.
     const MeshLattice& lattice() const { return lattice_; }
+
+    // The control points of the lattice around a block.
+    // REQUIRES: the patch has all of the block's cells.
+    void gather(const openvdb::Coord& origin, PaddedBlock& points) const;
 
     // 2 V - T of the vertices and triangles in the patch's cells. As polygonize()'s meshes are closed, twice their Euler number
     // changes by as much as this does when F changes in the patch alone, two lattice points or more from its border.
