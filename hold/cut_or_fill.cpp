@@ -351,4 +351,8 @@ TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& 
     return Limiter(field, refine, limits, smallestPart, progress).run(now);
 }
 
+bool isSearchedWhole(const BSplineField& field, int refine) {
+    return latticePoints(field, 2 * refine) <= kMostPoints;
+}
+
 }  // namespace isowave

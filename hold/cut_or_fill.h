@@ -44,4 +44,8 @@ TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& 
 TopologyEdits limitTopology(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
                             const SolidCounts& now, const Progress& progress);
 
+// Whether the lattice is small enough for limitTopology() to look at all of it as finely as the mesh does: in larger ones it finds what is
+// wide, and hardly what only the mesh's finest lattice has.
+bool isSearchedWhole(const BSplineField& field, int refine);
+
 }  // namespace isowave

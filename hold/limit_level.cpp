@@ -36,9 +36,9 @@ SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCount
     return limits;
 }
 
-void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                LevelReport& report, const Progress& progress) {
-    if (!limits.any()) return;
+std::string limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                       LevelReport& report, const Progress& progress) {
+    if (!limits.any()) return {};
     const MeshTopology& now = report.topology;
     const TopologyEdits edits =
         limitTopology(field, refine, limits, smallestPart, {now.parts, now.genus, now.cavities}, progress);
@@ -47,8 +47,7 @@ void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, doub
                                 featureOf(edit.what),
                                 {edit.at[0], edit.at[1], edit.at[2]},
                                 edit.volume});
-    if (edits.met) return;
-    missLimits(report, edits.why, progress);
+    return edits.why;
 }
 
 std::string nameOf(const LevelReport& report) {

@@ -14,11 +14,10 @@ namespace isowave {
 // coarser one must not exceed.
 SolidLimits limitsOf(const LevelOptions& options, const std::optional<SolidCounts>& before = {});
 
-// limitTopology() (hold/cut_or_fill.h) at F = 0; puts edits, and what of the limits is missed, into the report. The field is the level's own
-// copy: the pyramid stays as it is. The report has the counts of the level's
-// mesh as it is.
-void limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
-                LevelReport& report, const Progress& progress);
+// limitTopology() (hold/cut_or_fill.h) at F = 0; puts the edits into the report. The field is the level's own copy: the pyramid stays as
+// it is. The report has the counts of the level's mesh as it is. -> why limits are missed; empty where they are met.
+std::string limitLevel(BSplineField& field, int refine, const SolidLimits& limits, double smallestPart,
+                       LevelReport& report, const Progress& progress);
 
 // "level 2"; "step 7" where that is none.
 std::string nameOf(const LevelReport& report);

@@ -137,23 +137,37 @@ std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longe
     return samples;
 }
 
-std::vector<Thickness> thinnest(const std::vector<ThinSample>& samples, const std::vector<double>& shares) {
+namespace {
+
+// The thickness of the sample at which the area, ascending, reaches each of the shares.
+std::vector<double> quantiles(const std::vector<ThinSample>& samples, const std::vector<double>& shares,
+                              float ThinSample::*thickness) {
     std::vector<std::uint32_t> order(samples.size());
     std::iota(order.begin(), order.end(), 0);
     tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return samples[a].thickness != samples[b].thickness ? samples[a].thickness < samples[b].thickness
-                                                            : a < b;
+        const float ta = samples[a].*thickness, tb = samples[b].*thickness;
+        return ta != tb ? ta < tb : a < b;
     });
     double total = 0, sum = 0;
     for (const ThinSample& s : samples) total += s.area;
-    std::vector<Thickness> found(shares.size());
+    std::vector<double> found(shares.size());
     std::size_t next = 0;
     for (const std::uint32_t i : order) {
         sum += samples[i].area;
         const bool last = i == order.back();
         while (next < shares.size() && (last || sum >= shares[next] * total))
-            found[next++] = {samples[i].thickness, samples[i].thicknessInWorld};
+            found[next++] = samples[i].*thickness;
     }
+    return found;
+}
+
+}  // namespace
+
+std::vector<Thickness> thinnest(const std::vector<ThinSample>& samples, const std::vector<double>& shares) {
+    const std::vector<double> voxels = quantiles(samples, shares, &ThinSample::thickness),
+                              world = quantiles(samples, shares, &ThinSample::thicknessInWorld);
+    std::vector<Thickness> found;
+    for (std::size_t i = 0; i < shares.size(); ++i) found.push_back({voxels[i], world[i]});
     return found;
 }
 

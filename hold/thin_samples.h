@@ -55,7 +55,8 @@ std::vector<ThinSample> thinSamplesOf(const FinestSurface& surface, double longe
                                       const Progress& progress = {});
 
 // How thick the thinnest share (0 to 1) of the walls are, weighted by area: the thickness in voxels and in world units, for
-// each of the shares. Zeros where there is no sample. REQUIRES: ascending shares.
+// each of the shares. Where voxels are no cubes, the walls that are thinnest in voxels and those that are so in the world are others.
+// Zeros where there is no sample. REQUIRES: ascending shares.
 struct Thickness {
     double voxels = 0, world = 0;
 };

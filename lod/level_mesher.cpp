@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "hold/cut_or_fill.h"
 #include "hold/hold.h"
 #include "hold/limit_level.h"
 #include "isowave/error.h"
@@ -251,6 +252,7 @@ LevelMesh LevelMesher::whole(int step, const BSplineField& given) {
     if (step == 0 || mustFall(step)) before_ = countsOf(level.report.topology);
     if (step == 0) {
         level0_->counts = *before_;
+        tellMended(level.report);
         tellWalls(level.report);
         tellDifference(level.report);
     }
@@ -376,14 +378,27 @@ LevelMesher::Draft LevelMesher::withoutGaps(Draft draft, int step, const BSpline
     return draft;
 }
 
-// From level to level nothing becomes more, and nothing is more than was asked for.
+// What level 0 may have: no more than the input, where it has all of its parts and cavities; where parts have grown together, handles between
+// them are no faults of their own. Of a lattice that is too large for faults to be found nothing is asked.
+std::optional<SolidCounts> LevelMesher::mendable(const LevelMesh& level) const {
+    const LevelReport& report = level.report;
+    if (report.step != 0 || options_.hold != Holding::local || !truth_.counts) return {};
+    const SolidCounts counts = countsOf(report.topology), input = *truth_.counts;
+    const bool lacks = counts.parts < input.parts || counts.cavities < input.cavities;
+    if (lacks || excess(counts, input) > kMostEdits || !isSearchedWhole(level.field, report.refine))
+        return {};
+    return input;
+}
+
+// From level to level nothing becomes more, level 0 has no more than the input, and nothing is more than was asked for. What level 0 still
+// has too many tellDifference() says.
 void LevelMesher::limit(Draft& draft) {
     LevelMesh& level = draft.level;
     LevelReport& report = level.report;
     const bool falls =
         options_.hold == Holding::local && before_ && report.step != 0 && mustFall(report.step);
-    const SolidLimits limits = limitsOf(options_, falls ? before_ : std::nullopt);
     const SolidCounts counts = countsOf(report.topology);
+    const SolidLimits limits = limitsOf(options_, falls ? before_ : mendable(level));
     if (openBorder_ || report.vanished() || limits.allow(counts)) return;
     const bool asked = options_.maxGenus || options_.maxParts;
     if (falls && !asked && excess(counts, *before_) > kMostEdits) {
@@ -399,12 +414,15 @@ void LevelMesher::limit(Draft& draft) {
         missLimits(report, "cuts and fills are made where the iso-value is 0", progress_);
         return;
     }
+    std::string missed;
     {
         const StageClock::Scope scope(clock_, "cut and fill");
-        limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
-                   progress_);
+        missed = limitLevel(level.field, report.refine, limits, smallestAt(report.step, level.field), report,
+                            progress_);
     }
     if (!report.edits.empty()) draw(draft);
+    const bool isOwn = report.step == 0 && limitsOf(options_).allow(countsOf(report.topology));
+    if (!missed.empty() && !isOwn) missLimits(report, missed, progress_);
 }
 
 LevelMesher::Draft LevelMesher::shifted(Draft draft, int step, const BSplineField& field) {
@@ -489,6 +507,17 @@ void LevelMesher::tellWalls(LevelReport& report) const {
                                           : std::string("thickened at every level"));
     }
     progress_.say("the thinnest 1, 5, 50 % of the walls are" + text);
+}
+
+// Silence would mean that level 0 is the fit as it is.
+void LevelMesher::tellMended(const LevelReport& report) const {
+    if (report.edits.empty() || options_.maxGenus || options_.maxParts) return;
+    double volume = 0;
+    for (const LevelEdit& edit : report.edits) volume += std::abs(edit.volume);
+    progress_.say(fmt::format(
+        "level 0: {} ({:.3g} of volume) made, so that it has no more parts, handles and "
+        "cavities than the input",
+        counted(static_cast<std::int64_t>(report.edits.size()), "cut or fill", "cuts and fills"), volume));
 }
 
 // Silence would mean that level 0 is the input.

@@ -85,6 +85,7 @@ class LevelMesher {
     };
     Sampled sampled(int step, const BSplineField& field);
     Sampled sampledLevel0(const BSplineField& field);
+    std::optional<SolidCounts> mendable(const LevelMesh& level) const;
     Sampled sampledAsInput(const BSplineField& field) const;
     // A level whose mesh has its parts, handles, cavities and volume, and all its triangles. That it is closed and 2-manifold
     // is taken on trust here and counted when it is completed.
@@ -110,6 +111,7 @@ class LevelMesher {
     bool mustFall(int step) const;
     void hold(LevelMesh& level, double closedGaps) const;
     void tellWalls(LevelReport& report) const;
+    void tellMended(const LevelReport& report) const;
     void tellDifference(const LevelReport& report) const;
     double smallestAt(int step, const BSplineField& field) const;
     double isoFor(const LevelMesh& level, const std::optional<std::vector<double>>& thin) const;

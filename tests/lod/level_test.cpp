@@ -31,6 +31,31 @@ double framedWall(double x, double y, double z) {
 Solid plateSolid() { return open(distanceImage({56, 56, 30}, plate), {.iso = 0}); }
 Solid wallSolid() { return open(distanceImage({62, 62, 36}, framedWall), {.iso = 0}); }
 
+// A block with a slit 0.3 wide, 12 deep and 9 long, turned: 1 part, no handle.
+TriangleMesh slitMesh() {
+    const double polygon[8][2] = {{0, 0},    {12, 0},   {12, 16},   {6.15, 16},
+                                  {6.15, 4}, {5.85, 4}, {5.85, 16}, {0, 16}};
+    const double turn = std::numbers::pi / 6, tilt = 0.4;
+    TriangleMesh mesh;
+    for (const double z : {0.0, 9.0})
+        for (const auto& [x, y] : polygon) {
+            const double u = x * std::cos(turn) - y * std::sin(turn),
+                         v = x * std::sin(turn) + y * std::cos(turn);
+            mesh.points.push_back(
+                {u, v * std::cos(tilt) - z * std::sin(tilt), v * std::sin(tilt) + z * std::cos(tilt)});
+        }
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({a, c, d});
+    };
+    for (const auto& [a, b, c, d] : {std::array<std::uint32_t, 4>{0, 1, 4, 5}, {1, 2, 3, 4}, {5, 6, 7, 0}}) {
+        quad(d, c, b, a);
+        quad(a + 8, b + 8, c + 8, d + 8);
+    }
+    for (std::uint32_t i = 0; i < 8; ++i) quad(i, (i + 1) % 8, (i + 1) % 8 + 8, i + 8);
+    return mesh;
+}
+
 Solid realSolid(const std::string& file, const SolidOptions& options) {
     return open(std::filesystem::path(ISOWAVE_TEST_DATA) / file, options);
 }
@@ -316,6 +341,45 @@ TEST(Levels, SayHowThickTheWallsAre) {
     EXPECT_NEAR(levels[0].walls[1].world, 5, 0.1);
     EXPECT_EQ(levels[0].walls[1].heldUpTo, 4);  // voxels of 16: a quarter of one is less than 5 / 0.9
     EXPECT_TRUE(levels[1].walls.empty());
+}
+
+// Voxels of 1 x 1 x 4: of two plates, the one that is 5 thick along x is thicker in voxels and thinner in the world than the one of 3 voxels
+// along z.
+TEST(Levels, SortTheWallsByEachUnitOnItsOwn) {
+    Image image = imageOf({40, 40, 30}, [](int x, int y, int z) {
+        const double upright =
+            std::max({std::abs(x - 8.3) - 2.5, std::abs(y - 20.0) - 15.2, std::abs(z - 15.0) - 11.2});
+        const double lying =
+            std::max({std::abs(x - 26.3) - 9.2, std::abs(y - 20.0) - 15.2, std::abs(z - 15.2) - 1.5});
+        return -100 * std::min(upright, lying);
+    });
+    image.indexToWorld.axis[2][2] = 4;
+    const auto levels = levelsOf(open(image, {.iso = 0}), {.levels = StepRange{0, 0}});
+    const std::vector<WallThickness>& walls = levels[0].walls;
+    ASSERT_EQ(walls.size(), 3u);
+    for (std::size_t i = 1; i < 3; ++i) {
+        EXPECT_LE(walls[i - 1].voxels, walls[i].voxels);
+        EXPECT_LE(walls[i - 1].world, walls[i].world);
+    }
+    EXPECT_NEAR(walls[0].voxels, 3, 0.3);
+    EXPECT_NEAR(walls[0].world, 5, 0.5);
+}
+
+// The spline bridges a slit of a third of a voxel at places.
+TEST(Levels, HaveNoHandleAtLevel0ThatTheInputHasNot) {
+    const auto level0 = [](Holding hold, const Progress& progress) {
+        return levelsOf(open(slitMesh(), {.voxel = 1}),
+                        {.levels = StepRange{0, 0}, .refine = 4, .hold = hold}, progress)[0];
+    };
+    const LevelReport plain = level0(Holding::none, {});
+    EXPECT_GT(plain.topology.genus, 0);
+    EXPECT_TRUE(plain.edits.empty());
+    Remarks remarks;
+    const LevelReport mended = level0(Holding::local, remarks.progress());
+    EXPECT_EQ(countsOf(mended.topology), (SolidCounts{1, 0, 0}));
+    EXPECT_EQ(std::int64_t(mended.edits.size()), plain.topology.genus);
+    EXPECT_NEAR(mended.topology.volume, plain.topology.volume, 2);  // of 1685
+    EXPECT_THAT(remarks.text, HasSubstr("level 0: 2 cuts and fills (0.741 of volume) made, so "));
 }
 
 // A solid without anything thin is drawn as the plain level, to the bit.

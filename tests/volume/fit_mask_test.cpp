@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "volume/cubic_weights.h"
+#include "volume/fit/mask_between.h"
 #include "volume/fit/mask_energy.h"
 #include "volume/fit/mask_volume.h"
 #include "volume/nodes.h"
@@ -161,6 +163,52 @@ TEST(MaskVolume, OfAPlaneIsExact) {
     }
 }
 
+// F from control points by cubicWeights(), corners one by one.
+TEST(MaskBetween, TellsWhatMiddlesOfAgreeingCornersLack) {
+    constexpr float kFloor = 0.1f, kTarget = 0.3f;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> noise(-1, 1);
+    Block c, D;
+    for (float& v : c.values) v = noise(random);
+    for (float& v : D.values) v = noise(random) < 0.3f ? -1.0f : 1.0f;
+    LeafValues lacking;
+    lackingBetween(c, D, kFloor, kTarget, lacking);
+    const auto valueAt = [&](const Vec3d& x) {
+        double sum = 0;
+        const Coord low = Coord::floor(x);
+        for (int i = -1; i < 3; ++i)
+            for (int j = -1; j < 3; ++j)
+                for (int k = -1; k < 3; ++k) {
+                    const Coord p = low.offsetBy(i, j, k);
+                    double w = 1;
+                    for (int a = 0; a < 3; ++a) w *= cubicWeights(x[a] - low[a])[p[a] - low[a] + 1];
+                    if (w != 0) sum += w * c.at(p[0], p[1], p[2]);
+                }
+        return sum;
+    };
+    int places = 0;
+    for (int p = 0; p < 512; ++p) {
+        const Coord corner(p >> 6, p >> 3 & 7, p & 7);
+        const double s = D.at(corner[0], corner[1], corner[2]) < 0 ? -1 : 1;
+        double most = 0;
+        for (int n = 0; n < 27; ++n) {
+            const Coord way(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+            bool agree = n != 13;
+            for (int k = 0; k < 8; ++k) {
+                const Coord other =
+                    corner.offsetBy(k & 1 ? way[0] : 0, k & 2 ? way[1] : 0, k & 4 ? way[2] : 0);
+                agree = agree && (D.at(other[0], other[1], other[2]) < 0) == (s < 0);
+            }
+            const double sF = s * valueAt(corner.asVec3d() + way.asVec3d() / 2);
+            if (agree && sF < kFloor) most = std::max(most, kTarget - sF);
+        }
+        ASSERT_NEAR(lacking[p], most, 1e-5) << corner;
+        places += most > 0;
+    }
+    EXPECT_GT(places, 200);
+    EXPECT_LT(places, 512);
+}
+
 // ---- the fit
 
 BSplineField fitted(const Inside& inside, const CoordBBox& box, FitReport* report = nullptr) {
@@ -181,6 +229,35 @@ TEST(FitMask, SignsAgreeAtEveryLatticePointOfTheWholeZoo) {
             const bool inside = solid.box.isInside(*c) && solid.inside(*c);
             ASSERT_EQ(evaluate(field, shift + (*c).asVec3d()) < 0, inside) << solid.name << *c;
         }
+    }
+}
+
+// Two slabs of 40 x 40 with one voxel between them were joined at their corners, four of them.
+TEST(FitMask, SignsAgreeBetweenLatticePointsThatDo) {
+    std::vector<zoo::Solid> solids = zoo::thinSolids();
+    for (const int thick : {1, 3, 14})
+        solids.push_back({"slabs " + std::to_string(thick),
+                          [thick](const Coord& c) { return c[2] != thick; },
+                          CoordBBox(Coord(0), Coord(39, 39, 2 * thick)),
+                          {}});
+    solids.push_back(zoo::noisySolids()[0]);
+    for (const zoo::Solid& solid : solids) {
+        const BSplineField field = fitted(solid.inside, solid.box);
+        const auto inside = [&](const Coord& c) { return solid.box.isInside(c) && solid.inside(c); };
+        const Vec3d shift = field.transform().worldToIndex(Vec3d(0));
+        CoordBBox box = solid.box;
+        box.expand(1);
+        std::int64_t wrong = 0;
+        for (auto low = box.begin(); low; ++low)
+            for (int way = 1; way < 8; ++way) {
+                const Coord end = (*low).offsetBy(way & 1, way >> 1 & 1, way >> 2);
+                bool agree = true;
+                for (auto c = CoordBBox(*low, end).begin(); c; ++c)
+                    agree = agree && inside(*c) == inside(*low);
+                const Vec3d middle = ((*low).asVec3d() + end.asVec3d()) / 2;
+                wrong += agree && (evaluate(field, shift + middle) < 0) != inside(*low);
+            }
+        EXPECT_EQ(wrong, 0) << solid.name;
     }
 }
 

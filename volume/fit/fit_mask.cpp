@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "volume/fit/known.h"
+#include "volume/fit/mask_between.h"
 #include "volume/fit/mask_energy.h"
 #include "volume/fit/mask_volume.h"
 #include "volume/fit/repair.h"
@@ -19,9 +20,10 @@
 //   smooth  accelerated projected gradient: z = clip(y - g/144); y = z + (t - 1)/t' (z - v), t' = (1 + sqrt(1 + 4 t^2))/2
 //           (Beck and Teboulle: "A fast iterative shrinkage-thresholding algorithm", 4.1)
 //   shift   in the second half of the passes, every tenth, and at the end: v -= what blocks lack in volume; then t = 1
+//   between where the corners of a lattice edge, face or cell agree, F in its middle has their sign: |v| grows at the corners
 //   weigh   c interpolates v on I: quasi-interpolation, then corrections
 //   repair  as every fit; has nothing to do in all shapes that were tried
-// invariant of start, smooth and shift: v is within its bounds, |v| in [max(0.05, d - 1), d] with the mask's sign.
+// invariant of start, smooth, shift and between: v is within its bounds, |v| in [max(0.05, d - 1), d] with the mask's sign.
 
 namespace isowave {
 
@@ -34,6 +36,10 @@ constexpr float kClamp = 4;      // of v, and what becomes K
 constexpr int kShiftEvery = 10;  // passes
 constexpr int kLastShifts = 2;
 constexpr int kCorrections = 4;
+// F between lattice points that agree: where it has their sign by less than the first, it shall by the second. The spline swings where v turns
+// from its least to d: so two slabs with one voxel between them were joined at their corners.
+constexpr float kBetweenFloor = 0.01f, kBetweenTarget = 0.02f;
+constexpr int kBetweenRounds = 3;
 
 const LeafValues kPlus = allOf(kClamp), kMinus = allOf(-kClamp), kNone = allOf(kNoValue),
                  kFarOutside = allOf(kBeyondBand), kFarInside = allOf(-kBeyondBand);
@@ -107,6 +113,7 @@ class MaskFit {
             if (2 * k >= passes && (k + 1) % kShiftEvery == 0) shift();
         }
         for (int k = 0; k < kLastShifts; ++k) shift();
+        for (int k = 0; k < kBetweenRounds; ++k) keepBetween();
     }
 
     // On I of a field whose lattice point i + shift is point i here.
@@ -253,6 +260,23 @@ class MaskFit {
             }
         });
         restart();
+    }
+
+    void keepBetween() {
+        interpolate();
+        forEachLeaf([&](std::size_t i) {
+            if (isEmpty(known_[i])) return;
+            PaddedLeaf<float, 2, 2> c, D;
+            gather(band_, y_, i, kMinus, kPlus, c);
+            gather(band_, band_.distance, i, kFarInside, kFarOutside, D);
+            LeafValues lacking;
+            lackingBetween(c, D, kBetweenFloor, kBetweenTarget, lacking);
+            for (int p = 0; p < 512; ++p)
+                if (lacking[p] > 0) {
+                    const float D0 = band_.distance[i][p];
+                    v_[i][p] = clipped(v_[i][p] + std::copysign(lacking[p], D0), D0);
+                }
+        });
     }
 
     MaskBand band_;

@@ -31,10 +31,11 @@ BSplineField fitMask(const NodeCollection& nodes, const MaskFitOptions& options 
 // The same of a part, as fitDistancePart() in volume/fit.h is one, for options.passes = 60.
 //
 // How far the input reaches beyond the box: kMaskReach, and one for each pass of the repair. Every pass is local, so that the chain ends,
-// from the box outwards, `|` being to the next leaf: the repair and its signs 3, control points that interpolate 5 | three shifts
-// one after the other, of v from leaves two away, their control points 2, and 5 again: 23 | each; ten passes, 2 each: 20 | a shift
-// 23, ten passes: 43 | a shift 23, forty passes 80, the filter at the start 4, distances 4: 263 |.
-inline constexpr int kMaskReach = 264;
+// from the box outwards, `|` being to the next leaf: the repair and its signs 3, control points that interpolate 5, three times the
+// signs between lattice points 2 and their control points 5: 29 | three shifts one after the other, of v from leaves two away, their
+// control points 2, and 5 again: 23 | each; ten passes, 2 each: 20 | a shift 23, ten passes: 43 | a shift 23, forty passes 80, the filter
+// at the start 4, distances 4: 287 |.
+inline constexpr int kMaskReach = 288;
 BSplineField fitMaskPart(const NodeCollection& nodes, const MaskFitOptions& options,
                          const openvdb::CoordBBox& box, fitting::PartRepair& repair,
                          const Progress& progress = {});
