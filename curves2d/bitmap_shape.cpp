@@ -17,19 +17,6 @@
 namespace isowave::curves2d {
 namespace {
 
-void refuseNotFinite(const std::string& name, const Bitmap& bitmap) {
-    const auto bad = std::find_if_not(bitmap.values.begin(), bitmap.values.end(),
-                                      [](float v) { return std::isfinite(v); });
-    if (bad == bitmap.values.end()) return;
-    const std::int64_t i = bad - bitmap.values.begin();
-    throw InputError(name,
-                     fmt::format("pixel ({}, {}) is {}; {} of {} pixels are not finite. Replace them first",
-                                 i % bitmap.width, i / bitmap.width, *bad,
-                                 std::count_if(bitmap.values.begin(), bitmap.values.end(),
-                                               [](float v) { return !std::isfinite(v); }),
-                                 bitmap.values.size()));
-}
-
 Picture readByContent(const std::string& bytes, const std::string& name) {
     if (isPng(bytes)) return readPng(bytes, name);
     if (isTiff(bytes)) return readTiff(bytes, name);
@@ -133,6 +120,19 @@ ValueRange valueRange(const Bitmap& bitmap) {
     range.twoValues = std::all_of(bitmap.values.begin(), bitmap.values.end(),
                                   [&](float v) { return v == range.low || v == range.high; });
     return range;
+}
+
+void refuseNotFinite(const std::string& name, const Bitmap& bitmap) {
+    const auto bad = std::find_if_not(bitmap.values.begin(), bitmap.values.end(),
+                                      [](float v) { return std::isfinite(v); });
+    if (bad == bitmap.values.end()) return;
+    const std::int64_t i = bad - bitmap.values.begin();
+    throw InputError(name,
+                     fmt::format("pixel ({}, {}) is {}; {} of {} pixels are not finite. Replace them first",
+                                 i % bitmap.width, i / bitmap.width, *bad,
+                                 std::count_if(bitmap.values.begin(), bitmap.values.end(),
+                                               [](float v) { return !std::isfinite(v); }),
+                                 bitmap.values.size()));
 }
 
 Bitmap readBitmap(const std::filesystem::path& path) {

@@ -30,6 +30,9 @@ ValueRange valueRange(const Bitmap& bitmap);
 // io/picture has them, laid on white; where the whole border is transparent (less than half opaque), the opacity itself. Throws InputError: not an image, truncated, zero size, several pages, NaN.
 Bitmap readBitmap(const std::filesystem::path& path);
 
+// Throws InputError: the first pixel that is NaN or infinite, and how many are.
+void refuseNotFinite(const std::string& name, const Bitmap& bitmap);
+
 // Whether all pixels of the border exceed `iso`, and some others do not: these are a drawing, and the border is its ground.
 bool hasLightGround(const Bitmap& bitmap, double iso);
 

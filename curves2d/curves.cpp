@@ -58,6 +58,19 @@ Input inputOf(const Bitmap& bitmap, const InputOptions& options, const std::stri
     return input;
 }
 
+// Whether all rings are lines, but for rounding.
+bool areFlat(const std::vector<Polygon>& polygons) {
+    constexpr double kRounding = 1e-12;  // of the square of a ring's length
+    for (const Polygon& polygon : polygons)
+        for (const Ring& ring : polygon.rings) {
+            double around = 0;
+            for (std::size_t k = 0; k < ring.size(); ++k)
+                around += length(ring[(k + 1) % ring.size()] - ring[k]);
+            if (std::abs(signedArea(ring)) > kRounding * around * around) return false;
+        }
+    return true;
+}
+
 Shape shapeOfPolygons(const std::vector<Polygon>& polygons, const InputOptions& options,
                       const Progress& progress, const std::string& name) {
     Shape shape;
@@ -67,6 +80,8 @@ Shape shapeOfPolygons(const std::vector<Polygon>& polygons, const InputOptions& 
     } catch (const InputError& error) {
         throw InputError(name, error.what());
     }
+    if (shape.inside.empty() && areFlat(polygons))
+        throw InputError(name, "its rings have no area: their points lie on lines; expected polygons");
     if (shape.inside.empty())
         throw InputError(name, fmt::format("no pixel's middle lies in a polygon at --pixels {}; take more",
                                            options.pixels));
@@ -82,7 +97,9 @@ Input pictureInput(std::int32_t width, std::int32_t height, std::vector<float> v
         values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
         throw InputError(
             name, fmt::format("{} values are no picture of {} x {} pixels", values.size(), width, height));
-    return inputOf(Bitmap{width, height, std::move(values)}, options, name);
+    Bitmap bitmap{width, height, std::move(values)};
+    refuseNotFinite(name, bitmap);
+    return inputOf(std::move(bitmap), options, name);
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/number_text.h"
 #include "base/text.h"
 #include "curves2d/segment_tree.h"
 #include "io/vector/geojson.h"
@@ -67,11 +68,15 @@ class Collector {
         say(unclosed_, "not closed, closed");
         say(tooShort_, "with fewer than three different points, left out");
         say(polar_, "around a pole, completed along the border of the map");
-        say(crossing_, "meeting themselves; inside is what an odd number of turns surrounds");
+        say(crossing_, crossing_.number == 1
+                           ? "meeting itself; inside is what an odd number of turns surrounds"
+                           : "meeting themselves; inside is what an odd number of turns surrounds");
         if (others_.number)
-            result_.remarks.push_back(fmt::format("{} geometries that are no polygons left out (first: {})",
-                                                  others_.number,
-                                                  messageOf(others_.first.substr(0, kShown))));
+            result_.remarks.push_back(
+                fmt::format("{} left out (first: {})",
+                            counted(static_cast<std::int64_t>(others_.number), "geometry that is no polygon",
+                                    "geometries that are no polygons"),
+                            messageOf(others_.first.substr(0, kShown))));
         return std::move(result_);
     }
     const std::string& name() const { return name_; }
@@ -205,9 +210,10 @@ void readText(const std::string& text, Collector& out) {
         if (row.kind == PointRow::Kind::separator || row.kind == PointRow::Kind::blank) flush();
         if (row.kind != PointRow::Kind::point) return;
         if (row.columns < 2)
-            throw InputError(out.name(), fmt::format("line {}: '{}'; expected two numbers 'x y', '>' or an "
-                                                     "image",
-                                                     row.number, row.text.substr(0, 40)));
+            throw InputError(out.name(),
+                             fmt::format("line {}: '{}'; expected two numbers 'x y' or '>' "
+                                         "(GeoJSON begins with a bracket; an image has other bytes)",
+                                         row.number, row.text.substr(0, 40)));
         ring.push_back({row.values[0], row.values[1]});
     });
     flush();
@@ -233,6 +239,16 @@ bool segmentsMeet(const Segment& s, const Segment& t) {
     return onSegment(t.a, s) || onSegment(t.b, s) || onSegment(s.a, t) || onSegment(s.b, t);
 }
 
+// A point that both have, of segments that meet.
+Point meeting(const Segment& s, const Segment& t) {
+    const Point along = s.b - s.a, other = t.b - t.a;
+    const double across = cross(along, other);
+    if (across != 0) return s.a + (cross(t.a - s.a, other) / across) * along;
+    for (const Point p : {t.a, t.b})
+        if (onSegment(p, s)) return p;
+    return onSegment(s.a, t) ? s.a : s.b;
+}
+
 }  // namespace
 
 bool selfIntersection(const Ring& ring, Point& place) {
@@ -246,8 +262,10 @@ bool selfIntersection(const Ring& ring, Point& place) {
         box.take(segments[i].a);
         box.take(segments[i].b);
         bool found = false;
+        std::size_t other = i;
         tree.eachMeeting(box, [&](std::size_t j) {
             if (j <= i) return true;
+            other = j;
             const bool next = j == i + 1, previous = i == 0 && j == n - 1;
             if (next || previous) {
                 // Neighbours share a point; they meet elsewhere only when one folds back over the other.
@@ -261,7 +279,7 @@ bool selfIntersection(const Ring& ring, Point& place) {
             return !found;
         });
         if (found) {
-            place = segments[i].a;
+            place = meeting(segments[i], segments[other]);
             return true;
         }
     }

@@ -40,6 +40,9 @@ Fitting fittingOf(const SolidOptions& options, FitMethod fallback) {
     return fitting;
 }
 
+// Voxels. At 60 the distances of a mask of 24^3 voxels take 14 s, at 4 none.
+constexpr double kWidest = 64;
+
 void checkFitOptions(const SolidOptions& options) {
     requirePositive("--half-width", options.halfWidth);
     requirePositive("--band", options.band);
@@ -48,6 +51,11 @@ void checkFitOptions(const SolidOptions& options) {
     const DistanceFitOptions defaults;
     const double halfWidth = options.halfWidth.value_or(defaults.halfWidth),
                  band = options.band.value_or(defaults.band);
+    if (halfWidth > kWidest)
+        throw UsageError(
+            fmt::format("--half-width {} is more than {} voxels; the field is known near the surface "
+                        "alone, and what farther distances cost grows with their cube",
+                        halfWidth, kWidest));
     if (band > halfWidth)
         throw UsageError(
             fmt::format("--band {} is wider than --half-width {}; the distance is known only within "

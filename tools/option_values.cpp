@@ -133,8 +133,9 @@ Length lengthOrNumber(const std::string& text) {
 std::int64_t integer(const std::string& text, std::int64_t low, std::int64_t high) {
     const auto value = parseWhole<std::int64_t>(text, "a whole number");
     if (value < low || value > high)
-        throw UsageError("'" + text + "' is not between " + std::to_string(low) + " and " +
-                         std::to_string(high));
+        throw UsageError("'" + text + "' is not " +
+                         (high >= kHuge ? std::to_string(low) + " or more"
+                                        : "between " + std::to_string(low) + " and " + std::to_string(high)));
     return value;
 }
 

@@ -96,11 +96,14 @@ void settleSpacing(const std::string& file, Header& header, const ImageReadOptio
                                                   spacingText(header.spacing)));
         header.spacing = *options.spacing;
     } else if (!positive(header.spacing)) {
+        const auto& axis = header.axis;
+        const bool hasAxes = dot(cross(axis[0], axis[1]), axis[2]) != 0;
         throw InputError(
-            file,
-            fmt::format(
-                "its spacing is {}; expected positive numbers, 1e-12 to 1e12; give the right one as spacing",
-                spacingText(header.spacing)));
+            file, fmt::format("its spacing is {}; expected positive numbers, 1e-12 to 1e12; {}",
+                              spacingText(header.spacing),
+                              hasAxes ? "give the right one as spacing"
+                                      : "its axes have no directions either: mend its header (NIfTI: the "
+                                        "sform, or sform_code 0)"));
     } else if (!header.hasZSpacing) {
         header.warnings.push_back(fmt::format("no {} spacing in {}; {} {} is assumed; give the spacing",
                                               header.unspaced, header.format, spacingText(header.spacing),
@@ -122,10 +125,11 @@ void settleGeometry(const std::string& file, Header& header, const ImageReadOpti
         for (int a = 0; a < 3; ++a)
             text += fmt::format("{}({:.6g}, {:.6g}, {:.6g})", a == 0 ? "" : " ", axis[a][0], axis[a][1],
                                 axis[a][2]);
-        throw InputError(file,
-                         fmt::format("its axes point along {}, a direction matrix that cannot be inverted; "
-                                     "expected three independent axes",
-                                     text));
+        throw InputError(
+            file, fmt::format(
+                      "its axes point along {}, a direction matrix that cannot be inverted; "
+                      "expected three independent axes; mend its header (NIfTI: the sform, or sform_code 0)",
+                      text));
     }
     for (int a = 0; a < 3; ++a)
         if (!std::isfinite(header.origin[a]))

@@ -167,11 +167,14 @@ bool gzipEndsAt(const fs::path& path, std::int64_t bytes) {
 
 [[noreturn]] void throwTruncated(const fs::path& path, const std::string& promise, std::int64_t needed,
                                  std::int64_t held) {
-    throw InputError(
-        path.string(),
-        fmt::format("{} ({}) but the file holds {}; it is truncated or its header is wrong", promise,
-                    bytesText(static_cast<double>(needed)),
-                    needed == held ? "no end of its compressed data" : bytesText(static_cast<double>(held))));
+    std::string wanted = bytesText(static_cast<double>(needed)), found = bytesText(static_cast<double>(held));
+    if (needed == held)
+        found = "no end of its compressed data";
+    else if (wanted == found)
+        wanted = fmt::format("{} bytes", needed), found = fmt::format("{}", held);
+    throw InputError(path.string(),
+                     fmt::format("{} ({}) but the file holds {}; it is truncated or its header is wrong",
+                                 promise, wanted, found));
 }
 
 }  // namespace

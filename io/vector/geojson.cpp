@@ -224,21 +224,36 @@ Json toJson(const Polyline& line) {
     return points;
 }
 
+// "line 3, column 14"
+std::string placeOf(std::string_view text, std::size_t at) {
+    const std::string_view before = text.substr(0, at);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    return fmt::format("line {}, column {}", line, at - lineStart + 1);
+}
+
+// error: of a number beyond double, which it quotes.
+std::string complaintOfNumber(std::string_view text, std::string_view error) {
+    constexpr std::size_t kShown = 40;
+    const std::size_t open = error.find('\''), close = error.rfind('\'');
+    if (open == error.npos || close <= open) return "has a number that is too large; it is damaged";
+    const std::string_view number = error.substr(open + 1, close - open - 1);
+    return fmt::format("{}: the number {} is too large; expected at most 1.8e308; it is damaged",
+                       placeOf(text, std::min(text.find(number), text.size())), number.substr(0, kShown));
+}
+
 // byte: counted from 1, the last one read; beyond the end where more was expected.
 std::string complaintAt(std::string_view text, std::size_t byte) {
     const std::size_t at = std::min(byte == 0 ? 0 : byte - 1, text.size());
     const std::string_view before = text.substr(0, at);
-    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    const std::size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
     if (at >= text.size())
-        return fmt::format("ends in line {} (byte {}), before its brackets are closed; it is truncated", line,
-                           text.size());
+        return fmt::format("ends in line {} (byte {}), before its brackets are closed; it is truncated",
+                           1 + std::count(before.begin(), before.end(), '\n'), text.size());
     std::string found(text.substr(at, 20));
     for (char& c : found)
         if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-    return fmt::format(
-        "line {}, column {}: found '{}', where JSON expects something else; it is damaged or no JSON", line,
-        at - lineStart + 1, found);
+    return fmt::format("{}: found '{}', where JSON expects something else; it is damaged or no JSON",
+                       placeOf(text, at), found);
 }
 
 }  // namespace
@@ -255,8 +270,8 @@ GeoJson::GeoJson(const std::string& text, Positions positions, const std::string
     } catch (const nlohmann::json::parse_error& error) {
         complaint_ = complaintAt(withoutByteOrderMark(text), error.byte);
         return;
-    } catch (const nlohmann::json::exception&) {  // a number beyond double
-        complaint_ = "has a number that is too large; it is damaged";
+    } catch (const nlohmann::json::exception& error) {  // a number beyond double
+        complaint_ = complaintOfNumber(withoutByteOrderMark(text), error.what());
         return;
     }
     if (root.is_object() && root.contains("type")) type_ = typeOf(root);

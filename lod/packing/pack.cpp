@@ -66,6 +66,11 @@ class BoundedPacking {
     }
 
     compress::PackedBytes run(compress::PackOptions options, PackReport& report) {
+        if (const double most = options.voxelsPerK; bound_ > most)
+            throw UsageError(
+                fmt::format("{} is {:.4g} voxels; at most {:.4g}voxel is possible, the distance up "
+                            "to which the field is known",
+                            maxDistance_ ? "--max-distance" : "--bound", bound_, most));
         for (int tries = 0; tries < kMostTries; ++tries) {
             options.bound = bound_;
             options.source["packed.bound_voxels"] = fmt::format("{}", bound_);

@@ -162,7 +162,8 @@ def _of_geojson(shape: Any, remark: Callable[[str], None]) -> list[Any]:
         found = f"is a {others[0]}" if others else "holds no geometry"
         raise InputError(f"polygons: {found}; expected Polygon or MultiPolygon")
     if others:
-        remark(f"{len(others)} geometries that are no polygons left out (first: {others[0]})")
+        kind = "geometry that is no polygon" if len(others) == 1 else "geometries that are no polygons"
+        remark(f"{len(others)} {kind} left out (first: {others[0]})")
     return polygons
 
 

@@ -31,7 +31,11 @@ Picture readByName(const std::filesystem::path& path, const std::string& name) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(name, "cannot be opened; is the name right?");
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    return extension == ".png" ? readPng(bytes, name) : readTiff(bytes, name);
+    Picture picture = extension == ".png" ? readPng(bytes, name) : readTiff(bytes, name);
+    if (picture.pages > 1)
+        throw InputError(
+            name, fmt::format("holds {} pages; expected one. Save the page as an image", picture.pages));
+    return picture;
 }
 
 void requireFinite(const Grid& grid, const std::string& name) {

@@ -326,8 +326,10 @@ TEST_F(Polygons, WhatIsRepairedIsSaidWithItsRing) {
     EXPECT_THAT(remark(good + ",[[1,1],[1,2],[2,2]]"),
                 HasSubstr("not closed, closed (first: polygon 0, ring 1)"));
     EXPECT_THAT(remark(good + ",[[1,1],[1,1],[1,1]]"), HasSubstr("fewer than three"));
-    EXPECT_THAT(remark("[[0,0],[4,4],[4,0],[0,4],[0,0]]"), HasSubstr("meeting themselves"));
-    EXPECT_THAT(remark("[[0,0],[4,0],[2,0],[2,4],[0,0]]"), HasSubstr("meeting themselves"));  // a spike
+    EXPECT_THAT(remark("[[0,0],[4,4],[4,0],[0,4],[0,0]]"),
+                HasSubstr("meeting itself; inside is what an odd number of turns surrounds (first: polygon "
+                          "0, ring 0 near (2, 2))"));
+    EXPECT_THAT(remark("[[0,0],[4,0],[2,0],[2,4],[0,0]]"), HasSubstr("meeting itself"));  // a spike
 }
 
 // A shape that is cut at the antimeridian has a closed outline on each side; one that is not cut would run round the world.

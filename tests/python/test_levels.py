@@ -1,6 +1,7 @@
 """Curves and heights by reversing subdivision, and their files of details."""
 
 import json
+import struct
 
 import numpy as np
 import pytest
@@ -19,6 +20,16 @@ def wave(points=96):
 def hill(rows=33, columns=41):
     y, x = np.mgrid[0:rows, 0:columns]
     return 20 * np.exp(-((x - 16.0) ** 2 + (y - 12.0) ** 2) / 64) + np.sin(x * 1.3) * np.cos(y)
+
+
+def two_pages():
+    """A TIFF of two pages of 8 x 8 grey pixels."""
+    entry = lambda tag, kind, value: struct.pack("<HHII", tag, kind, 1, value)  # noqa: E731
+    tags = [(256, 4, 8), (257, 4, 8), (258, 4, 8), (259, 4, 1), (262, 4, 1), (273, 4, 8), (277, 4, 1), (278, 4, 8), (279, 4, 64)]
+    directory = struct.pack("<H", len(tags)) + b"".join(entry(*tag) for tag in tags)
+    first = 8 + 64
+    return (struct.pack("<2sHI", b"II", 42, first) + bytes(range(64)) + directory + struct.pack("<I", first + len(directory) + 4)
+            + directory + struct.pack("<I", 0))  # fmt: skip
 
 
 def test_curves_and_their_file_are_those_of_the_command(tmp_path):
@@ -116,6 +127,11 @@ def test_errors(tmp_path):
         isowave.relief(hill(), depth=21)
     with pytest.raises(isowave.InputError, match="heights: "):
         isowave.relief(np.full((9, 9), np.nan))
+    with pytest.raises(isowave.InputError, match="heights: is masked"):
+        isowave.relief(np.ma.masked_greater(hill(), 0.5))
+    (tmp_path / "pages.tif").write_bytes(two_pages())
+    with pytest.raises(isowave.InputError, match="pages.tif: holds 2 pages; expected one"):
+        isowave.relief(tmp_path / "pages.tif")
     with pytest.raises(isowave.InputError, match="heights: "):
         isowave.relief(np.zeros((3, 3)), depth=5)
     isowave.relief(hill()).save(tmp_path / "relief")

@@ -67,7 +67,7 @@ def test_geojson_in_memory_is_that_of_a_file(tmp_path):
         __geo_interface__ = collection
 
     of_file = isowave.curves(tmp_path / "a.geojson", pixels=128)
-    assert "1 geometries that are no polygons left out (first: Point)" in of_file.remarks
+    assert "1 geometry that is no polygon left out (first: Point)" in of_file.remarks
     for source in (collection, Frame()):
         ladder = isowave.curves(source, pixels=128)
         assert [level.report for level in ladder] == [level.report for level in of_file]
@@ -85,6 +85,14 @@ def test_geojson_in_memory_is_that_of_a_file(tmp_path):
 def test_what_is_no_polygon_is_told(source, says):
     with pytest.raises(isowave.InputError, match=says):
         isowave.curves(source)
+
+
+def test_pixels_must_be_finite():
+    picture = np.zeros((20, 20), np.float32)
+    picture[5:15, 5:15] = 1
+    picture[9, 7] = np.nan
+    with pytest.raises(isowave.InputError, match=r"picture: pixel \(7, 9\) is nan; 1 of 400 pixels are not finite"):
+        isowave.curves(picture)
 
 
 def test_other_texts_and_the_sheet(tmp_path):

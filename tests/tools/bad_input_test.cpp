@@ -445,6 +445,13 @@ const std::vector<BadInput>& rows() {
              return lod(f, "a.stl", {"--band", "6"});
          },
          {"--band", "--half-width"}},
+        {"HalfWidthOfTheWholeRoom",
+         2,
+         [](const Folder& f) {
+             writeStl(f / "a.stl", torus(10, 4));
+             return lod(f, "a.stl", {"--half-width", "1e9"});
+         },
+         {"--half-width 1000000000 is more than 64 voxels"}},
         {"LevelsAndSteps",
          2,
          [](const Folder& f) {

@@ -178,6 +178,7 @@ TEST(CurvesCommand, RefusesWhatAPyramidHasNoUseFor) {
                {file, {"--pyramid", file}, 2, "p.iwc"},
                {file, {"--levels", "1", "--steps", "2"}, 2, "--levels and --steps exclude each other"},
                {file, {"--steps", "90.."}, 3, "ends at step"},
+               {kAfrica, {"--half-width", "65"}, 2, "--half-width 65 is more than 64 pixels"},
                {kAfrica, {"--pyramid", (folder / "p.vdb").string()}, 2, "does not end in .iwc"},
                {(folder / "half.iwc").string(), {}, 3, "it is truncated"},
                {(folder / "other.iwc").string(), {}, 3, "is no pyramid of curves"},

@@ -126,6 +126,10 @@ TEST_F(PackedTorus, RefusesBadLengthsNamesAndFiles) {
     for (const std::string bad : {"0voxel", "-1mm", "nan", "0.1", "mm", "1furlong", "1e999voxel"})
         expectRefused(with({"--bound", bad, "-o", at("a.iwz")}), 2, "--bound");
     expectRefused(with({"--max-distance", "0mm", "-o", at("a.iwz")}), 2, "--max-distance");
+    expectRefused(
+        with({"--bound", "5voxel", "-o", at("a.iwz")}), 2,
+        "--bound is 5 voxels; at most 4voxel is possible, the distance up to which the field is known");
+    expectRefused(with({"--max-distance", "1e9mm", "-o", at("a.iwz")}), 2, "--max-distance is ");
     std::ofstream(at("bad.iwz")) << "not packed";
     expectRefused({"mesh", at("bad.iwz"), "-o", at("a.ply")}, 3, "is no packed solid");
     pack({}, "torus.iwz");

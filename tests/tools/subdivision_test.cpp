@@ -279,12 +279,30 @@ TEST(RebuildOfQuincunx, GivesWhatReliefHasReconstructedToTheByte) {
     EXPECT_FALSE(fs::exists(folder / "no.npy"));
 }
 
+// Two triangles with points of their own: the edge between them is twice on the border, and subdivision opens it.
+TEST(SubdivisionCommands, SayWhereBordersLieOnEachOther) {
+    const Folder folder;
+    const auto at = [&](const std::string& name) { return (folder / name).string(); };
+    std::ofstream(at("two.off"))
+        << "OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 3 4 5\n";
+    const Result seam = isowave({"subdivide", at("two.off"), "--scheme", "loop", "-o", at("fine.off")});
+    EXPECT_EQ(seam.exitCode, 0);
+    EXPECT_THAT(
+        seam.err,
+        HasSubstr("two.off: 2 edges of the border lie on each other: the surface opens there; merge "));
+    std::ofstream(at("one.off")) << "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n";
+    EXPECT_EQ(isowave({"subdivide", at("one.off"), "--scheme", "loop", "-o", at("fine.off")}).err, "");
+}
+
 TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
     const Folder folder;
     const auto out = (folder / "out").string(), terrain = (kData / "terrain" / "jacksboro.npy").string(),
                coast = (kData / "coast" / "iceland.txt").string();
     std::ofstream(folder / "short.txt") << "0 0\n1 0\n1 1\n";
     std::ofstream(folder / "nan.txt") << "0 0\n1 nan\n1 1\n";
+    std::ofstream(folder / "cube.off")
+        << "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+           "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
     const struct {
         std::vector<std::string> arguments;
         int code;
@@ -293,8 +311,8 @@ TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
         {{"filters"}, 2, "name a subdivision"},
         {{"filters", "cubic", "--mask", "1 1"}, 2, "not both"},
         {{"filters", "cubic", "--lattice", "quad"}, 2, "--lattice: says where a --mask lives"},
-        {{"filters", "nurbs"}, 3, "chaikin, cubic, dlg"},
-        {{"filters", "cubic", "--width", "1"}, 3, "the smallest that exists has 3 taps"},
+        {{"filters", "nurbs"}, 2, "chaikin, cubic, dlg"},
+        {{"filters", "cubic", "--width", "1"}, 2, "the smallest that exists has 3 taps"},
         {{"filters", "--mask", "1/2 1/2 1/2 1/2"}, 3, "not injective"},
         {{"filters", "--mask", "1/2 x"}, 3, "number 2"},
         {{"filters", "cubic", "--boundary", "--json", "-"}, 2, "--boundary"},
@@ -314,6 +332,9 @@ TEST(SubdivisionCommands, RefuseBadInputInOneLine) {
         {{"relief", terrain, "-o", out, "--scheme", "litke"}, 2, "loop-like:ALPHA,GAMMA"},
         {{"relief", terrain, "-o", out, "--depth", "9"}, 3, "too small for 9 levels"},
         {{"relief", coast, "-o", out}, 3, ".npy .asc .png .tif"},
+        {{"subdivide", (folder / "cube.off").string(), "--depth", "15", "-o", out + ".ply"},
+         3,
+         "cube.off: --depth 15 makes 6.44e+09 faces, about 902 GB of memory, over the limit of "},
     };
     for (const auto& each : cases) {
         const auto result = isowave(each.arguments);

@@ -52,7 +52,8 @@ void CurveOptions::declareFit(OptionList& options) {
                       fit = choice<curves2d::Fit>(
                           v, {{"binary", curves2d::Fit::binary}, {"distance", curves2d::Fit::distance}});
                   });
-    options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
+    options.value("--half-width", "W", "4",
+                  "distance fit: the distance is clamped to W voxels each side, at most 64",
                   [this](const std::string& v) { halfWidth = lengthIn(v, "pixels"); });
     options.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
                   [this](const std::string& v) { band = lengthIn(v, "pixels"); });
@@ -106,6 +107,10 @@ curves2d::InputOptions CurveOptions::input() const {
 }
 
 curves2d::LadderOptions CurveOptions::ladder() const {
+    if (constexpr double kWidest = 64; halfWidth.value_or(4) > kWidest)
+        throw UsageError(
+            fmt::format("--half-width {} is more than {} pixels; the field is known near the curve alone",
+                        *halfWidth, kWidest));
     if (band.value_or(2) > halfWidth.value_or(4))
         throw UsageError("--band is larger than --half-width; distances are known up to the half-width only");
     if (pyramid && !curves2d::isPyramidPath(*pyramid))

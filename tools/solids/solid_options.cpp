@@ -71,7 +71,8 @@ void declareFit(OptionList& options, SolidOptions& solid) {
                                                         {"binary", FitMethod::binary},
                                                         {"distance", FitMethod::distance}});
                   });
-    options.value("--half-width", "W", "4", "distance fit: the distance is clamped to W voxels each side",
+    options.value("--half-width", "W", "4",
+                  "distance fit: the distance is clamped to W voxels each side, at most 64",
                   [&](const std::string& v) { solid.halfWidth = lengthIn(v, kVoxels); });
     options.value("--band", "B", "2", "distance fit: nodes nearer than B voxels are kept; at most W",
                   [&](const std::string& v) { solid.band = lengthIn(v, kVoxels); });

@@ -11,6 +11,7 @@
 #include "tools/report/filters.h"
 #include "tools/report/filters_svg.h"
 #include "tools/subdivision/filter_options.h"
+#include "tools/subdivision/mesh_options.h"
 
 namespace isowave::tools {
 namespace {
@@ -69,7 +70,7 @@ Filters FiltersCommand::wanted() const {
                          ") or give your own with --mask, not both");
     if (!mask_ && lattice_ != Lattice::Line)
         throw UsageError("--lattice: says where a --mask lives; " + arguments[0].string() + " has its own");
-    if (!mask_) return namedFilters(arguments[0].string(), width_);
+    if (!mask_) return asked("filters", [&] { return namedFilters(arguments[0].string(), width_); });
     return maskFilters(customMask(lattice_, parseRationals(*mask_)), width_);
 }
 

@@ -163,7 +163,11 @@ NiftiFields fieldsOf(const fs::path& path) {
     const double offset = second ? static_cast<double>(bytes.at<std::int64_t>(kNifti2.offset))
                                  : static_cast<double>(bytes.at<float>(kNifti1.offset));
     if (!(offset >= 0 && offset < 1e9))
-        throw InputError(name, fmt::format("its header says that voxels begin at byte {:g}", offset));
+        throw InputError(
+            name,
+            fmt::format("its header says that voxels begin at byte {:g}; expected 0 to 1e9, usually {}; mend "
+                        "its vox_offset",
+                        offset, pair ? 0 : (second ? kLength2 : kLength1) + 4));
     // Four bytes behind the header say whether extensions follow.
     const std::int64_t least = pair ? 0 : (second ? kLength2 : kLength1) + 4;
     f.firstVoxel = std::max(least, static_cast<std::int64_t>(offset));
@@ -181,7 +185,9 @@ ValueType typeOf(const std::string& name, int code) {
         {1792, "complex numbers"}, {2048, "complex numbers"}, {2304, "RGB colours"}};
     if (const auto found = types.find(code); found != types.end()) return found->second;
     if (const auto found = others.find(code); found != others.end())
-        throw InputError(name, fmt::format("holds {}; expected one number a voxel", found->second));
+        throw InputError(
+            name, fmt::format("holds {}; expected one number a voxel; save one component, or grey values",
+                              found->second));
     throw InputError(
         name, fmt::format("its header says data type {}; expected an integer or floating-point type", code));
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/file_bytes.h"
+#include "base/number_text.h"
 #include "io/image/check.h"
 #include "io/image/plain.h"
 #include "io/image/tiff/planes.h"
@@ -37,11 +38,13 @@ void requireAlike(const std::string& file, const std::vector<TiffPage>& pages,
                                   "save the slices without the others",
                                   k + 1, sizeOfPage(page), chosen.front() + 1, sizeOfPage(first)));
         if (page.type != first.type || page.samples != first.samples || page.bits != first.bits)
-            throw InputError(file,
-                             fmt::format("its page {} holds {} of {} samples but page {} {} of {}; expected "
-                                         "pages of one type",
-                                         k + 1, kindOfPage(page), page.samples, chosen.front() + 1,
-                                         kindOfPage(first), first.samples));
+            throw InputError(
+                file,
+                fmt::format("its page {} holds {} of {}, {} a sample, but page {} {} of {}, {} a sample; "
+                            "expected pages of one type",
+                            k + 1, kindOfPage(page), counted(page.samples, "sample"),
+                            counted(page.bits, "bit"), chosen.front() + 1, kindOfPage(first),
+                            counted(first.samples, "sample"), counted(first.bits, "bit")));
     }
 }
 
