@@ -103,6 +103,8 @@ DicomObject objectOf(DicomFile& file) {
     for (const DicomSet& segment : set.items(tag::kSegments))
         o.segments.push_back(fmt::format("{} '{}'", segment.number(tag::kSegmentNumber, 0),
                                          oneLine(segment.text(tag::kSegmentLabel))));
+    o.isLabelMap = set.text(tag::kSegmentationType) == "LABELMAP";
+    if (o.isLabelMap) o.background = set.number(tag::kPadding);
     if (set.text(tag::kSegmentationType) == "FRACTIONAL" && o.allocated > 1) {
         o.mostFraction = std::max(1.0, set.number(tag::kMostFraction, 255));
         o.remarks.push_back("its values are shares of a voxel, 0 to 1; half of it is --iso 0.5");

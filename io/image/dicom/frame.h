@@ -28,6 +28,8 @@ struct DicomObject {
     ValueType type = ValueType::int16;  // uint8 for 1 bit, 16 bits for 12
     std::string colour;
     std::vector<std::string> segments;  // of a segmentation: "1 'liver'"
+    bool isLabelMap = false;            // a segmentation whose pixels are numbers of segments
+    std::optional<double> background;   // of one: the number that stands for none, beside 0
     double mostFraction = 0;           // of one whose values are shares of a voxel: what stands for all of it
     std::vector<std::string> remarks;  // what whoever uses the image has to know
     std::string problem;               // why its pixels cannot be used; empty when they can

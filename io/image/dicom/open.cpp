@@ -51,7 +51,9 @@ void requireUsable(const DicomStack& stack) {
             throw InputError(frame.object->file.path.string(), frame.object->problem);
 }
 
-bool isSegmentation(const DicomStack& stack) { return stack[0].segment > 0 && stack[0].placed(); }
+bool isSegmentation(const DicomStack& stack) {
+    return (stack[0].segment > 0 || stack[0].object->isLabelMap) && stack[0].placed();
+}
 
 // options.stack: a segment.
 SourcePtr openPicked(const std::string& name, DicomStack stack, const ImageReadOptions& options) {

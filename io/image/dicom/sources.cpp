@@ -244,7 +244,7 @@ class SegmentsSource : public VoxelSource {
         pixels_.read(frame, values_.data());
         const bool bits = frame.object->allocated == 1;
         for (std::size_t v = 0; v < values_.size(); ++v) {
-            if (values_[v] == 0) continue;
+            if (values_[v] == 0 || values_[v] == frame.object->background) continue;
             const float value = bits ? static_cast<float>(frame.segment) : values_[v];
             if (out[v] != 0) throwOverlap(frame, out[v]);
             out[v] = value;
@@ -269,6 +269,10 @@ class SegmentsSource : public VoxelSource {
 SourcePtr segmentsSource(const std::string& folder, DicomStack stack, const ImageReadOptions& options) {
     const bool bits = stack[0].object->allocated == 1;
     const std::size_t segments = segmentsOf(stack).size();
+    if (options.stack && stack[0].object->isLabelMap)
+        throw InputError(folder,
+                         fmt::format("is one map of all segments ({}); choose one by its number: --label N",
+                                     listOf(stack)));
     if (options.stack) stack = ofSegment(folder, stack, *options.stack);
     if (!options.stack && !bits && segments > 1)
         throw InputError(folder,

@@ -582,6 +582,42 @@ TEST_F(DicomSegments, ThatOverlapAreChosenByStack) {
     EXPECT_EQ(image.values[27], 2);
 }
 
+// A map of labels leaves out frames without any (dcmqi does): two slices 5 mm apart, of three. 9 stands for none, as 0 does.
+TEST_F(DicomSegments, OfALabelMapMayLackEmptyFrames) {
+    DicomSays says;
+    says.sop = "1.2.840.10008.5.1.4.1.1.66.7";
+    says.modality = "SEG";
+    says.allocated = says.stored = 8;
+    says.isSigned = 0;
+    says.frames = 2;
+    std::vector<DicomOut> groups(2);
+    for (int i = 0; i < 2; ++i) {
+        DicomOut position;
+        position.numbers(0x00200032, {0, 0, 5.0 * i});
+        groups[static_cast<std::size_t>(i)].sequence(0x00209113, {position});
+    }
+    DicomOut measures, shared;
+    measures.text(0x00280030, "DS", "0.8\\0.7").text(0x00180088, "DS", "2.5");
+    shared.sequence(0x00289110, {measures});
+    says.more.us(0x00280120, 9).text(0x00620001, "CS", "LABELMAP");
+    says.more.sequence(0x52009229, {shared}).sequence(0x52009230, groups);
+    says.pixels.assign(40, '\0');
+    says.pixels[5] = 3;
+    says.pixels[6] = 9;
+    says.pixels[26] = 7;
+    const fs::path path = slice("seg.dcm", says);
+    const Image image = readImage(path);
+    EXPECT_THAT(image.size, ElementsAre(4, 5, 3));
+    expectSpacing(image, 0.7, 0.8, 2.5);
+    std::vector<float> expected(60);
+    expected[5] = 3;
+    expected[40 + 6] = 7;
+    EXPECT_EQ(image.values, expected);
+    ImageReadOptions options;
+    options.stack = 1;
+    EXPECT_THAT(test::refusal(path, options), HasSubstr("is one map of all segments"));
+}
+
 // Shares, as nets and atlases give them: 0, 64 and 128 of 128 are no labels.
 TEST_F(DicomSegments, OfSharesAreNumbersFrom0To1) {
     DicomSays says;
