@@ -29,6 +29,7 @@ struct Slice {
     std::string format;
     Header header;
     std::function<void(void*)> read;  // its voxels
+    std::string palette = {};         // of a PNG of labels
 };
 
 [[noreturn]] void throwColours(const fs::path& path, int channels) {
@@ -46,12 +47,14 @@ Header headerOf(const Picture& picture) {
 
 Slice openPngSlice(const fs::path& path) {
     const auto bytes = std::make_shared<const std::string>(readFile(path, "a slice"));
-    const Picture header = readPngHeader(*bytes, path.string());
+    const Picture header = readPngNumbersHeader(*bytes, path.string());
     if (header.channels != 1) throwColours(path, header.channels);
-    return {"PNG", headerOf(header), [bytes, path](void* out) {
-                const Picture picture = readPng(*bytes, path.string());
+    return {"PNG", headerOf(header),
+            [bytes, path](void* out) {
+                const Picture picture = readPngNumbers(*bytes, path.string());
                 std::memcpy(out, picture.samples.data(), picture.samples.size());
-            }};
+            },
+            header.palette};
 }
 
 // Grey values of a picture of colours that are none: red, green and blue differ by no more than `most`.
@@ -97,8 +100,9 @@ Slice openSlice(const fs::path& path, const ImageReadOptions& options) {
 
 class SlicesSource : public VoxelSource {
   public:
-    SlicesSource(std::vector<fs::path> slices, const ImageReadOptions& options)
-        : slices_(std::move(slices)), options_(options) {
+    // palette: of the first one.
+    SlicesSource(std::vector<fs::path> slices, std::string palette, const ImageReadOptions& options)
+        : slices_(std::move(slices)), palette_(std::move(palette)), options_(options) {
         native = true;
     }
 
@@ -107,14 +111,25 @@ class SlicesSource : public VoxelSource {
         for (std::int64_t z = z0; z < z1; ++z) {
             const fs::path& path = slices_[static_cast<std::size_t>(z)];
             const Slice slice = openSlice(path, options_);
-            requireLikeFirst(path, slice.header);
+            requireLikeFirst(path, slice);
             slice.read(bytes);
             bytes += static_cast<std::size_t>(header.sliceVoxels()) * sizeOf(header.type);
         }
     }
 
   private:
-    void requireLikeFirst(const fs::path& path, const Header& slice) const {
+    void requireLikeFirst(const fs::path& path, const Slice& opened) const {
+        const Header& slice = opened.header;
+        // A writer that lists only the colours in use, in their order, has another label in every place from slice to slice.
+        const std::size_t common = std::min(opened.palette.size(), palette_.size());
+        if (opened.palette.empty() != palette_.empty() ||
+            opened.palette.compare(0, common, palette_, 0, common) != 0)
+            throw InputError(
+                path.string(),
+                fmt::format(
+                    "has another palette than the first slice, {}, so that its numbers are other labels; "
+                    "expected one palette in all of them",
+                    slices_[0].filename().string()));
         if (slice.size[0] != header.size[0] || slice.size[1] != header.size[1] || slice.size[2] != 1)
             throw InputError(path.string(), fmt::format("is a slice of {} but the first, {}, is {} x {} x 1",
                                                         sizeText(slice.size), slices_[0].filename().string(),
@@ -126,6 +141,7 @@ class SlicesSource : public VoxelSource {
     }
 
     std::vector<fs::path> slices_;
+    std::string palette_;
     ImageReadOptions options_;
 };
 
@@ -202,7 +218,7 @@ SourcePtr openSliceFiles(const fs::path& folder, const std::vector<fs::path>& sl
                                      "of the files",
                                      slices.size()));
     }
-    auto source = std::make_unique<SlicesSource>(slices, options);
+    auto source = std::make_unique<SlicesSource>(slices, first.palette, options);
     source->header = first.header;
     source->header.format = first.format + " slices";
     source->header.size[2] = static_cast<std::int64_t>(slices.size());

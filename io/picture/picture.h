@@ -31,6 +31,8 @@ struct Picture {
     std::optional<std::array<double, 2>> pixelSize = {};  // mm
     std::optional<double> noData =
         {};  // the sample that its file says stands for none, as GeoTIFF has it; numbers only
+    // Red, green, blue of each colour, where the samples are places in a palette and not colours.
+    std::string palette = {};
     // Row by row from the top, the channels of a pixel together, in this machine's byte order.
     std::vector<std::byte> samples = {};
 

@@ -4,6 +4,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <csetjmp>
 #include <cstring>
@@ -91,8 +92,10 @@ bool run(png_structp png, const F& f) {
 
 class PngReader {
   public:
-    PngReader(std::string_view bytes, const std::string& name)
-        : name_(name), compressed_((requireMagic(bytes), checkChunks(bytes, name))) {
+    enum class Palette { colours, numbers };  // what its pixels become
+
+    PngReader(std::string_view bytes, const std::string& name, Palette palette)
+        : name_(name), palette_(palette), compressed_((requireMagic(bytes), checkChunks(bytes, name))) {
         transfer_.rest = bytes;
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &transfer_, onError, onWarning);
         info_ = png_ ? png_create_info_struct(png_) : nullptr;
@@ -143,7 +146,10 @@ class PngReader {
         png_read_info(png_, info_);
         picture.bits = png_get_bit_depth(png_, info_);
         bitsEach_ = picture.bits * png_get_channels(png_, info_);
-        png_set_expand(png_);  // palettes, fewer than 8 bits, tRNS
+        if (palette_ == Palette::numbers && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE)
+            takeNumbers(picture);
+        else
+            png_set_expand(png_);  // palettes, fewer than 8 bits, tRNS
         if (std::endian::native == std::endian::little) png_set_swap(png_);
         png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
@@ -159,7 +165,29 @@ class PngReader {
         if (png_get_sCAL(png_, info_, &unit, &across, &down) != 0) picture.pixelSize = {across, down};
     }
 
+    // Of a palette. Runs under run().
+    void takeNumbers(Picture& picture) {
+        png_colorp colours = nullptr;
+        int count = 0;
+        png_get_PLTE(png_, info_, &colours, &count);
+        const bool isGrey = std::all_of(colours, colours + count, [](const png_color& c) {
+            return c.red == c.green && c.green == c.blue;
+        });
+        if (isGrey) {
+            png_set_palette_to_rgb(png_);
+            png_set_strip_alpha(png_);
+            png_set_rgb_to_gray_fixed(png_, PNG_ERROR_ACTION_NONE, PNG_RGB_TO_GRAY_DEFAULT,
+                                      PNG_RGB_TO_GRAY_DEFAULT);
+            return;
+        }
+        png_set_packing(png_);
+        for (const png_color* c = colours; c != colours + count; ++c)
+            for (const png_byte part : {c->red, c->green, c->blue})
+                picture.palette.push_back(static_cast<char>(part));
+    }
+
     const std::string& name_;
+    Palette palette_;
     std::size_t compressed_;
     int bitsEach_ = 0;  // of a pixel in the file
     Transfer transfer_;
@@ -187,10 +215,15 @@ void write(png_structp png, png_infop info, const Picture& picture, png_bytepp r
 
 bool isPng(std::string_view bytes) { return bytes.starts_with(kMagic); }
 
-Picture readPng(std::string_view bytes, const std::string& name) { return PngReader(bytes, name).picture(); }
+Picture readPng(std::string_view bytes, const std::string& name) {
+    return PngReader(bytes, name, PngReader::Palette::colours).picture();
+}
 
-Picture readPngHeader(std::string_view bytes, const std::string& name) {
-    return PngReader(bytes, name).header();
+Picture readPngNumbers(std::string_view bytes, const std::string& name) {
+    return PngReader(bytes, name, PngReader::Palette::numbers).picture();
+}
+Picture readPngNumbersHeader(std::string_view bytes, const std::string& name) {
+    return PngReader(bytes, name, PngReader::Palette::numbers).header();
 }
 
 std::string pngBytes(const Picture& picture) {

@@ -14,8 +14,12 @@ bool isPng(std::string_view bytes);
 // (tRNS) becomes opacity. pixelSize: the two numbers of sCAL, which ITK writes in mm whatever unit it names.
 // `name` stands in messages. Throws InputError: truncated, a chunk with a wrong checksum, damaged.
 Picture readPng(std::string_view bytes, const std::string& name);
-// The same without samples.
-Picture readPngHeader(std::string_view bytes, const std::string& name);
+
+// The same for volumes: what has a palette is one number a pixel, as a TIFF is (io/picture/tiff.h). Of colours that is the place in the
+// palette, a label, whatever it looks like; where all of them are grey, the grey value.
+Picture readPngNumbers(std::string_view bytes, const std::string& name);
+// Without samples.
+Picture readPngNumbersHeader(std::string_view bytes, const std::string& name);
 
 // The file. REQUIRES: uint8 or uint16; 1 or 2 channels, or 3 or 4 that are colours, an even number with opacity.
 // Throws OperationError.

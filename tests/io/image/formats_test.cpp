@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "isowave/image.h"
+#include "tests/gzip.h"
 #include "tests/io/image/files.h"
 #include "tests/io/image/itk.h"
 
@@ -194,6 +195,44 @@ TEST_F(ImageFormat, SlicesOfJpegAreTheirGreyValuesWithAWarning) {
             ASSERT_EQ(image.values[k], i.Get()) << name << " " << k;
     }
     EXPECT_EQ(k, image.values.size());
+}
+
+// A PNG of 4 x 1 pixels with a palette; its colours as 3 bytes each. clear: the first one is.
+std::string palettePng(const std::string& colours, const std::string& places, bool clear = false) {
+    const auto number = [](std::uint32_t n) {
+        std::string bytes;
+        for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(n >> shift & 255);
+        return bytes;
+    };
+    const auto chunk = [&](const std::string& name, const std::string& data) {
+        const std::string body = name + data;
+        const auto sum =
+            crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+        return number(static_cast<std::uint32_t>(data.size())) + body +
+               number(static_cast<std::uint32_t>(sum));
+    };
+    const std::string settings{"\x08\x03\0\0\0", 5};
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", number(4) + number(1) + settings) + chunk("PLTE", colours) +
+           (clear ? chunk("tRNS", std::string(1, '\0')) : "") +
+           chunk("IDAT", test::deflated(std::string(1, '\0') + places, 15)) + chunk("IEND", "");
+}
+
+// As a TIFF with a palette has them. Label pictures were refused as RGB, with the advice to make them grey, which mixes labels up.
+TEST_F(ImageFormat, PngWithAPaletteOfColoursHoldsLabels) {
+    const std::string colours{"\0\0\0\xff\0\0\0\xff\0\0\0\xff", 12};
+    put(folder / "1.png", palettePng(colours, {"\0\1\2\3", 4}));
+    put(folder / "2.png", palettePng(colours.substr(0, 9), {"\2\2\1\0", 4}, true));
+    const Image image = readImage(folder);
+    EXPECT_EQ(image.componentType, "uint8");
+    EXPECT_THAT(image.values, ElementsAre(0, 1, 2, 3, 2, 2, 1, 0));
+    put(folder / "2.png", palettePng({"\0\0\0\0\xff\0\xff\0\0", 9}, {"\0\1\2\2", 4}));
+    EXPECT_THAT(test::refusal(folder), HasSubstr("2.png: has another palette than the first slice, 1.png"));
+}
+
+TEST_F(ImageFormat, PngWithAPaletteOfGreysHoldsThem) {
+    const std::string greys{"\x64\x64\x64\0\0\0\xc8\xc8\xc8", 9};
+    for (const char* name : {"1.png", "2.png"}) put(folder / name, palettePng(greys, {"\0\1\2\0", 4}, true));
+    EXPECT_THAT(readImage(folder).values, ElementsAre(100, 0, 200, 100, 100, 0, 200, 100));
 }
 
 // Scanners put a preview beside the slices.

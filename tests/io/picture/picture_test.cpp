@@ -140,7 +140,7 @@ TEST(Png, KeepsWhatItsFileSaysOfPixels) {
     Picture picture = pictureOf<std::uint8_t>(1, 1, 1, ValueType::uint8, {7});
     picture.pixelSize = {{0.5, 0.25}};
     picture.isSrgb = true;
-    const Picture back = readPngHeader(pngBytes(picture), "p");
+    const Picture back = readPngNumbersHeader(pngBytes(picture), "p");
     EXPECT_THAT(*back.pixelSize, ElementsAre(0.5, 0.25));
     EXPECT_TRUE(back.isSrgb);
     EXPECT_TRUE(back.samples.empty());
