@@ -21,6 +21,24 @@ namespace {
 constexpr double kLargest = 1e9;
 constexpr std::size_t kShown = 40;  // bytes of a piece of the file in a remark
 
+bool isInside(Point p, const Ring& ring) {
+    bool inside = false;
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
+        if ((ring[i].y > p.y) != (ring[j].y > p.y) &&
+            p.x < ring[j].x + (p.y - ring[j].y) * (ring[i].x - ring[j].x) / (ring[i].y - ring[j].y))
+            inside = !inside;
+    return inside;
+}
+
+// By some of its points, and the middles between them: those on the shell itself may be either.
+bool liesOutside(const Ring& hole, const Ring& shell) {
+    constexpr std::size_t kTried = 16;
+    for (std::size_t i = 0; i < std::min(hole.size(), kTried); ++i)
+        if (isInside(hole[i], shell) || isInside(0.5 * (hole[i] + hole[(i + 1) % hole.size()]), shell))
+            return false;
+    return true;
+}
+
 // Takes rings as they come from a file, checks and repairs them.
 class Collector {
   public:
@@ -50,6 +68,8 @@ class Collector {
         Point meeting;
         if (selfIntersection(ring, meeting))
             count(crossing_, fmt::format("{} near ({}, {})", place, meeting.x, meeting.y));
+        if (mustBeClosed && !polygon_.rings.empty() && liesOutside(ring, polygon_.rings.front()))
+            count(outside_, place);
         polygon_.rings.push_back(std::move(ring));
     }
     void other(const std::string& type) { count(others_, type); }
@@ -71,6 +91,8 @@ class Collector {
         say(crossing_, crossing_.number == 1
                            ? "meeting itself; inside is what an odd number of turns surrounds"
                            : "meeting themselves; inside is what an odd number of turns surrounds");
+        say(outside_, outside_.number == 1 ? "is a hole outside of its polygon and adds to it"
+                                           : "are holes outside of their polygons and add to them");
         if (others_.number)
             result_.remarks.push_back(
                 fmt::format("{} left out (first: {})",
@@ -98,7 +120,7 @@ class Collector {
     std::string name_;
     Polygon polygon_;
     PolygonInput result_;
-    Count unclosed_, tooShort_, polar_, crossing_, others_;
+    Count unclosed_, tooShort_, polar_, crossing_, outside_, others_;
 };
 
 // ---- JSON

@@ -329,6 +329,10 @@ TEST_F(Polygons, WhatIsRepairedIsSaidWithItsRing) {
     EXPECT_THAT(remark("[[0,0],[4,4],[4,0],[0,4],[0,0]]"),
                 HasSubstr("meeting itself; inside is what an odd number of turns surrounds (first: polygon "
                           "0, ring 0 near (2, 2))"));
+    EXPECT_THAT(
+        remark("[[0,0],[4,0],[4,4],[0,4],[0,0]],[[6,0],[6,1],[7,1],[7,0],[6,0]]"),
+        HasSubstr("1 ring is a hole outside of its polygon and adds to it (first: polygon 0, ring 1)"));
+    EXPECT_EQ(remark("[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,2],[2,2],[2,1],[1,1]]"), "");
     EXPECT_THAT(remark("[[0,0],[4,0],[2,0],[2,4],[0,0]]"), HasSubstr("meeting itself"));  // a spike
 }
 
