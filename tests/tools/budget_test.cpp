@@ -123,14 +123,14 @@ TEST_F(RingBudget, MeasuresTheDeviationFromTheZeroSetWhenAsked) {
 
 TEST_F(RingBudget, RefusesWhatCannotBeInOneLine) {
     for (const auto& [more, code, part] : std::vector<std::tuple<Arguments, int, std::string>>{
-             {{"--triangles", "0"}, 2, "between 4"},
+             {{"--triangles", "0"}, 2, "is not 4 or more"},
              {{"--triangles", "100,,5"}, 2, "whole number"},
              {{"--ratio", "1.5"}, 2, "above 1"},
              {{"--tolerance", "-1"}, 2, "above 0"},
              {{"--compact", "--threads", "1"}, 2, "--refine 2 or 4"},
              {{"--compact", "--refine", "2", "--relax", "1"}, 2, "exclude each other"},
              {{"--min-component", "1e9"}, 3, "no step has components"},
-             {{"--max-parts", "0"}, 2, "between 1"}}) {
+             {{"--max-parts", "0"}, 2, "is not 1 or more"}}) {
         const Result result = isowave(command(more));
         EXPECT_EQ(result.exitCode, code) << more[1];
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
