@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -113,7 +114,7 @@ class MaskFit {
             if (2 * k >= passes && (k + 1) % kShiftEvery == 0) shift();
         }
         for (int k = 0; k < kLastShifts; ++k) shift();
-        for (int k = 0; k < kBetweenRounds; ++k) keepBetween();
+        for (int k = 0; k < kBetweenRounds && keepBetween(); ++k) continue;
     }
 
     // On I of a field whose lattice point i + shift is point i here.
@@ -262,7 +263,9 @@ class MaskFit {
         restart();
     }
 
-    void keepBetween() {
+    // -> whether something was lacking; where nothing was, more rounds would change nothing.
+    bool keepBetween() {
+        std::atomic<bool> lacked = false;
         interpolate();
         forEachLeaf([&](std::size_t i) {
             if (isEmpty(known_[i])) return;
@@ -273,10 +276,12 @@ class MaskFit {
             lackingBetween(c, D, kBetweenFloor, kBetweenTarget, lacking);
             for (int p = 0; p < 512; ++p)
                 if (lacking[p] > 0) {
+                    lacked = true;
                     const float D0 = band_.distance[i][p];
                     v_[i][p] = clipped(v_[i][p] + std::copysign(lacking[p], D0), D0);
                 }
         });
+        return lacked;
     }
 
     MaskBand band_;
