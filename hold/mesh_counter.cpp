@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/disjoint_sets.h"
 #include "hold/lattice_patch.h"
 #include "polygonize/knot_insertion.h"
 #include "polygonize/specks.h"
@@ -25,7 +26,7 @@ SurfacePieces piecesOf(const PaddedBlock& points, const Coord& origin) {
     return hasBothSigns(points) ? surfacePieces(points, origin) : SurfacePieces{};
 }
 
-// Pairs of a named thing each, ascending names on both sides, without repetitions.
+// The pieces, one of each block, that share a vertex; each pair once.
 std::vector<std::pair<std::uint16_t, std::uint16_t>> shared(const std::vector<SurfacePieces::OnFace>& a,
                                                             const std::vector<SurfacePieces::OnFace>& b) {
     std::vector<std::pair<std::uint16_t, std::uint16_t>> pairs;
@@ -47,25 +48,6 @@ Coord aheadOf(const Coord& origin, int axis, int blocks) {
     next[axis] += blocks * kBlock;
     return next;
 }
-
-// Pieces of all blocks, one after the other, joined.
-class Joined {
-  public:
-    explicit Joined(std::size_t pieces) : parent_(pieces) {
-        for (std::size_t i = 0; i < pieces; ++i) parent_[i] = static_cast<std::uint32_t>(i);
-    }
-    std::uint32_t rootOf(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = rootOf(a), b = rootOf(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 
@@ -120,18 +102,18 @@ SolidCounts MeshCounter::counts() const {
         first.push_back(pieces);
         pieces += static_cast<std::uint32_t>(block.surface.pieces.size());
     }
-    Joined joined(pieces);
+    DisjointSets joined(pieces);  // of all blocks, one after the other
     for (std::size_t i = 0; i < blocks_.size(); ++i)
         for (int axis = 0; axis < 3; ++axis) {
             if (blocks_[i].ahead[axis].empty()) continue;
             const std::uint32_t next = first[find(aheadOf(blocks_[i].origin, axis, 1))];
-            for (const auto& [a, b] : blocks_[i].ahead[axis]) joined.unite(first[i] + a, next + b);
+            for (const auto& [a, b] : blocks_[i].ahead[axis]) joined.join(first[i] + a, next + b);
         }
     std::vector<SurfacePiece> sums(pieces);
     std::vector<bool> isComponent(pieces);
     for (std::size_t i = 0; i < blocks_.size(); ++i)
         for (std::size_t k = 0; k < blocks_[i].surface.pieces.size(); ++k) {
-            const std::uint32_t root = joined.rootOf(first[i] + static_cast<std::uint32_t>(k));
+            const std::uint32_t root = joined.of(first[i] + static_cast<std::uint32_t>(k));
             const SurfacePiece& piece = blocks_[i].surface.pieces[k];
             isComponent[root] = true;
             sums[root].twiceEuler += piece.twiceEuler;

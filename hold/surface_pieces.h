@@ -16,8 +16,6 @@ struct SurfacePiece {
         0;  // 2 V - T; V: of the edges that start at the block's lattice points, and inside its cells. Over all
             // blocks that a component of a closed mesh meets they add up to twice its Euler number.
     double volume = 0;  // of the cone from lattice point (0,0,0), lattice cells; they add up, too
-
-    bool operator==(const SurfacePiece&) const = default;
 };
 
 struct SurfacePieces {

@@ -122,9 +122,14 @@ def _one_volume(array: npt.NDArray[Any], number: Optional[int], last: bool) -> n
     return array
 
 
-def _checked(values: Any) -> npt.NDArray[Any]:
+def refuse_masked(values: Any, name: str) -> None:
+    """A masked array would lose its mask on the way."""
     if isinstance(values, np.ma.MaskedArray):
-        raise InputError("array: is masked, and its mask would be lost; give array.filled(value)")
+        raise InputError(f"{name}: is masked, and its mask would be lost; give array.filled(value)")
+
+
+def _checked(values: Any) -> npt.NDArray[Any]:
+    refuse_masked(values, "array")
     array = np.asarray(values)
     numeric = array.dtype.kind in "biu" or (array.dtype.kind == "f" and array.dtype.itemsize in (4, 8))
     if not numeric:

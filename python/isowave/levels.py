@@ -11,8 +11,9 @@ import numpy.typing as npt
 from . import _native
 from ._details import check_dropping, checked_depth, depth_of, report_of
 from ._meshes import PathLike, is_path
+from ._volumes import refuse_masked
 from ._watch import ProgressLike, Watch
-from .errors import InputError, UsageError
+from .errors import UsageError
 
 __all__ = ["Curve", "CurveDetails", "ReliefDetails", "curve_levels", "relief"]
 
@@ -168,8 +169,7 @@ def curve_levels(
 
 
 def _heights(heights: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
-    if isinstance(heights, np.ma.MaskedArray):
-        raise InputError(f"{name}: is masked, and its mask would be lost; give array.filled(value)")
+    refuse_masked(heights, name)
     values = np.ascontiguousarray(heights, dtype=np.float64)
     if values.ndim not in (2, 3) or (values.ndim == 3 and not 1 <= values.shape[2] <= 4):
         raise UsageError(f"{name}: has the shape {values.shape}; expected (rows, columns), or with up to 4 channels last")

@@ -8,7 +8,7 @@ namespace {
 constexpr int kIn = PaddedLeaf<float, 2, 2>::kSize;  // control points -2 .. 9
 constexpr int kOut = 19;                             // lattice points -1 .. 8 and the middles between them
 
-// `lines` lines of an array along one axis: control point k at in + k s, place k at out + k t.
+// One line of an array along an axis: control point k at in + k s, place k at out + k t.
 inline void alongLine(const float* in, int s, float* out, int t) {
     for (int k = 0; k + 2 < kIn; ++k, in += s, out += 2 * t) {
         out[0] = (in[0] + 4 * in[s] + in[2 * s]) / 6;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "io/mesh/float32.h"
 
 namespace isowave {
@@ -14,31 +15,13 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Disjoint sets of points (Tarjan 1975), with path halving; a set is called by its smallest point.
-class PointSets {
-  public:
-    explicit PointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    std::uint32_t of(std::uint32_t p) {
-        while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
-        return p;
-    }
-    void join(std::uint32_t p, std::uint32_t q) {
-        p = of(p), q = of(q);
-        parent_[std::max(p, q)] = std::min(p, q);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 struct Shells {
     std::vector<std::uint32_t> ofTriangle;
     std::size_t count = 0;
 };
 
 Shells shellsOf(std::size_t pointCount, std::span<const Triangle> triangles) {
-    PointSets sets(pointCount);
+    DisjointSets sets(pointCount);
     for (const Triangle& t : triangles) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
     Shells shells;
     std::vector<std::uint32_t> number(pointCount, kNone);
