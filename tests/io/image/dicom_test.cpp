@@ -499,6 +499,17 @@ TEST_F(DicomFrames, AreRefusedAtEveryTruncation) {
 
 class DicomSegments : public DicomFrames {
   protected:
+    // 4 x 5 pixels, all 0.
+    static DicomSays twoFramesOfBytes(const std::string& sop) {
+        DicomSays says;
+        says.sop = sop;
+        says.modality = "SEG";
+        says.allocated = says.stored = 8;
+        says.isSigned = 0;
+        says.frames = 2;
+        says.pixels.assign(40, '\0');
+        return says;
+    }
     // 4 x 5 pixels, one bit each; frame i holds segment segments[i] at height heights[i], in the pixel pixels[i].
     fs::path write(const std::vector<int>& segments, const std::vector<double>& heights,
                    const std::vector<int>& pixels) {
@@ -584,12 +595,7 @@ TEST_F(DicomSegments, ThatOverlapAreChosenByStack) {
 
 // A map of labels leaves out frames without any (dcmqi does): two slices 5 mm apart, of three. 9 stands for none, as 0 does.
 TEST_F(DicomSegments, OfALabelMapMayLackEmptyFrames) {
-    DicomSays says;
-    says.sop = "1.2.840.10008.5.1.4.1.1.66.7";
-    says.modality = "SEG";
-    says.allocated = says.stored = 8;
-    says.isSigned = 0;
-    says.frames = 2;
+    DicomSays says = twoFramesOfBytes("1.2.840.10008.5.1.4.1.1.66.7");
     std::vector<DicomOut> groups(2);
     for (int i = 0; i < 2; ++i) {
         DicomOut position;
@@ -601,7 +607,6 @@ TEST_F(DicomSegments, OfALabelMapMayLackEmptyFrames) {
     shared.sequence(0x00289110, {measures});
     says.more.us(0x00280120, 9).text(0x00620001, "CS", "LABELMAP");
     says.more.sequence(0x52009229, {shared}).sequence(0x52009230, groups);
-    says.pixels.assign(40, '\0');
     says.pixels[5] = 3;
     says.pixels[6] = 9;
     says.pixels[26] = 7;
@@ -620,12 +625,7 @@ TEST_F(DicomSegments, OfALabelMapMayLackEmptyFrames) {
 
 // Shares, as nets and atlases give them: 0, 64 and 128 of 128 are no labels.
 TEST_F(DicomSegments, OfSharesAreNumbersFrom0To1) {
-    DicomSays says;
-    says.sop = "1.2.840.10008.5.1.4.1.1.66.4";
-    says.modality = "SEG";
-    says.allocated = says.stored = 8;
-    says.isSigned = 0;
-    says.frames = 2;
+    DicomSays says = twoFramesOfBytes("1.2.840.10008.5.1.4.1.1.66.4");
     std::vector<DicomOut> groups(2);
     for (int i = 0; i < 2; ++i) {
         DicomOut position, segment;
@@ -634,7 +634,6 @@ TEST_F(DicomSegments, OfSharesAreNumbersFrom0To1) {
         groups[static_cast<std::size_t>(i)].sequence(0x00209113, {position}).sequence(0x0062000A, {segment});
     }
     says.more.text(0x00620001, "CS", "FRACTIONAL").us(0x0062000E, 128).sequence(0x52009230, groups);
-    says.pixels.assign(40, '\0');
     says.pixels[5] = 64;
     says.pixels[26] = '\x80';
     const Image image = readImage(slice("seg.dcm", says));
